@@ -1,0 +1,41 @@
+# What every target of the project has in common.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+find_program(FOVEA_CCACHE ccache)
+if(FOVEA_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${FOVEA_CCACHE})
+endif()
+
+add_library(fovea_warnings INTERFACE)
+target_compile_options(fovea_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+
+# Same bits on any machine: no contraction into fused multiply-adds that depends on the target.
+add_library(fovea_floating_point INTERFACE)
+target_compile_options(fovea_floating_point INTERFACE -ffp-contract=off)
+
+# fovea_module(name DEPENDS modules... LIBRARIES private libraries...)
+# One folder of src/fovea: all its .cpp files, one static library. DEPENDS are the folders that its
+# headers include; order in src/fovea/CMakeLists.txt forbids cycles.
+function(fovea_module name)
+  cmake_parse_arguments(arg "" "" "DEPENDS;LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  add_library(fovea_${name} STATIC ${sources})
+  add_library(fovea::${name} ALIAS fovea_${name})
+  set_target_properties(fovea_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(fovea_${name} PUBLIC cxx_std_20)
+  target_include_directories(fovea_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
+  foreach(dependency IN LISTS arg_DEPENDS)
+    target_link_libraries(fovea_${name} PUBLIC fovea_${dependency})
+  endforeach()
+  target_link_libraries(fovea_${name} PRIVATE ${arg_LIBRARIES} $<BUILD_INTERFACE:fovea_warnings>
+    $<BUILD_INTERFACE:fovea_floating_point>)
+  set_property(GLOBAL APPEND PROPERTY FOVEA_MODULES fovea_${name})
+endfunction()

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "fovea/io/write.h"
+#include "fovea/model/model.h"
+
+namespace fovea {
+
+/// A model as glTF files in memory, and what they are made of.
+struct GltfOutput {
+  std::vector<OutputFile> files;  ///< The .glb alone, or .gltf, .bin and images.
+  ByteCounts bytes;
+};
+
+/// Encodes a model as glTF 2.0: `binary` gives one GLB, else a .gltf with `stem`.bin beside it and
+/// images in files of their own under the names they came with.
+///
+/// Vertices are split (model/weld.h), ordered for the vertex cache and for fetching (meshoptimizer);
+/// equal data is stored once. Untouched elements are written from their own JSON. Attributes are
+/// stored as they were read or as `options` say; indices as small as fits. The extension lists are
+/// made anew from what the file uses.
+GltfOutput write_gltf(const Model& model, bool binary, const std::string& stem,
+                      const WriteOptions& options, Context& context);
+
+}  // namespace fovea

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "fovea/base/context.h"
+#include "fovea/base/options.h"
+#include "fovea/model/model.h"
+
+namespace fovea {
+
+/// Limits that keep a hostile or mistaken file from exhausting the machine. Exceeding one is
+/// Error(limit) that names the option.
+struct ReadOptions {
+  std::int64_t max_file_bytes = std::int64_t{8} << 30;  ///< Of any one file, images included.
+  std::int64_t max_elements = 400'000'000;   ///< Of any one accessor or index list: vertices, indices, keys.
+  std::int64_t max_total_bytes = std::int64_t{16} << 30;  ///< Of all decoded data of one model.
+};
+OptionList describe(ReadOptions& options);
+
+/// File formats that Fovea tells apart, by content first and extension second.
+enum class FileFormat { gltf, glb, obj, ply, stl, other };
+
+/// Looks at the first bytes, then at the extension; `other` is left to the general importer.
+FileFormat detect_format(std::span<const std::byte> head, const std::filesystem::path& path);
+
+/// Reads a model of any known format. Triangles strips, fans and polygons become triangles;
+/// positions are welded (model/weld.h). Texture coordinates have glTF's origin (0, 0 = top left).
+///
+/// Throws Error: input (file missing), format (damaged; the place is file + JSON pointer, line or
+/// byte offset), unsupported, limit. Repairs and drops are diagnostics of `context`.
+Model read_model(const std::filesystem::path& path, const ReadOptions& options, Context& context);
+
+/// A whole file in memory. Throws Error(input) or Error(limit).
+std::vector<std::byte> read_file(const std::filesystem::path& path, std::int64_t max_bytes);
+
+}  // namespace fovea

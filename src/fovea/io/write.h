@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/base/options.h"
+#include "fovea/model/model.h"
+
+namespace fovea {
+
+/// Compression of vertices and indices in a glTF file.
+enum class GeometryCompression { none, meshopt };
+
+struct WriteOptions {
+  /// Store positions, normals, colours and texture coordinates as integers (KHR_mesh_quantization).
+  /// Off by default: without it attributes are stored as they were read.
+  bool quantize = false;
+  std::int64_t position_bits = 14;  ///< 1..16, of the largest extent of a mesh. gltfpack's default.
+  std::int64_t uv_bits = 12;        ///< 1..16
+  std::int64_t normal_bits = 8;     ///< 1..16; up to 8 are stored as bytes. Tangents too.
+  std::int64_t color_bits = 8;      ///< 1..16; up to 8 are stored as bytes.
+  /// `meshopt` writes EXT_meshopt_compression; best with `quantize`.
+  GeometryCompression compression = GeometryCompression::none;
+  /// Replace an existing output file. An input of the same run is only replaced with this.
+  bool force = false;
+};
+OptionList describe(WriteOptions& options);
+
+/// One file of an output: name relative to the output's folder ("" for the output itself).
+struct OutputFile {
+  std::string name;
+  std::vector<std::byte> bytes;
+};
+
+/// Writes a model in the format of the extension: .glb, .gltf (with .bin and images beside it),
+/// .obj (+ .mtl and images), .ply. All files are written to temporary names and renamed when all are
+/// complete; nothing is left behind on failure.
+///
+/// Throws Error(output), Error(usage) for an unknown extension or an existing file without `force`,
+/// Error(unsupported) if the format cannot hold what the model needs (a PLY of an animation loses
+/// it: that is a diagnostic, not an error).
+void write_model(const Model& model, const std::filesystem::path& path, const WriteOptions& options,
+                 Context& context);
+
+/// Writes files safely: each to a temporary name beside its place, then all renamed.
+void write_files(const std::filesystem::path& path, std::span<const OutputFile> files, bool force);
+
+/// Bytes that a model's file holds, by kind.
+struct ByteCounts {
+  std::uint64_t geometry = 0;   ///< Vertices, indices and morph targets as stored (compressed if so).
+  std::uint64_t images = 0;     ///< Encoded images.
+  std::uint64_t animation = 0;  ///< Animation samplers and skins.
+  std::uint64_t other = 0;      ///< JSON, padding, points and lines, what extensions carry.
+  std::uint64_t total() const { return geometry + images + animation + other; }
+};
+
+}  // namespace fovea
