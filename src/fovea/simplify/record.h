@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fovea/base/math.h"
+#include "fovea/model/tri_mesh.h"
+
+namespace fovea {
+
+/// What one step did to a mesh.
+enum class StepKind : std::uint8_t {
+  collapse,  ///< An edge became a vertex.
+  vanish,    ///< A whole component went.
+};
+
+/// One step of a simplification. Ids are those of the mesh that was simplified.
+struct CollapseStep {
+  StepKind kind = StepKind::collapse;
+  std::uint32_t mesh = 0;       ///< Index into the meshes that were simplified together.
+  VertexId removed, kept;       ///< collapse: `removed` became `kept`; vanish: none.
+  Vec3f position;               ///< collapse: where `kept` is from now on.
+  float error_rel = 0;          ///< Largest error of all steps so far, of the scene's diagonal.
+  // Ends of this step's runs in the record's lists; they begin where the step before it ends.
+  std::uint32_t faces_end = 0, merges_end = 0, writes_end = 0, floats_end = 0;
+};
+
+/// Two values of a layer became one: corners with `removed` have `kept` from now on.
+struct ValueMerge {
+  std::uint32_t layer = 0;
+  ValueId removed, kept;
+};
+
+/// A value of a layer was set to new numbers (layer width + morphs, in the record's float list).
+struct ValueWrite {
+  std::uint32_t layer = 0;
+  ValueId value;
+};
+
+/// The canonical output of simplification: every step in order, with all that is needed to replay it
+/// on the mesh that it started from. Any level of detail is a replay of the first n steps.
+struct CollapseRecord {
+  std::vector<CollapseStep> steps;
+  std::vector<FaceId> removed_faces;
+  std::vector<ValueMerge> merges;
+  std::vector<ValueWrite> writes;
+  std::vector<float> floats;  ///< New numbers of `writes`, and position morphs of `kept`, in order.
+  /// Triangles left over all meshes after the first n steps, [#steps + 1].
+  std::vector<std::uint64_t> triangles_after;
+};
+
+/// The meshes after the first `step_count` steps. `sources` are the meshes that were simplified, in
+/// the same order. The results keep layers, parts and morph targets; vertices and values that nothing
+/// uses any more are dropped; `source_vertex` follows the collapses. O(#steps + #F · #layers).
+std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
+                            std::size_t step_count);
+
+}  // namespace fovea

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/base/options.h"
+#include "fovea/model/field.h"
+#include "fovea/model/model.h"
+#include "fovea/simplify/record.h"
+
+namespace fovea {
+
+/// Where the vertex that an edge collapses to is put.
+enum class Placement {
+  optimal,    ///< At the minimum of the error; falls back to the edge's ends and middle.
+  half_edge,  ///< At one end of the edge: every vertex of the result is a vertex of the input.
+};
+
+/// What to simplify to, and what counts as an error. Targets given together: the first reached stops.
+struct SimplifyOptions {
+  std::optional<std::int64_t> triangles;  ///< Triangles to keep over all meshes, each counted once.
+  std::optional<double> ratio;            ///< Fraction of the triangles to keep, 0..1.
+  std::optional<double> error;            ///< Largest error, as a fraction of the scene's diagonal.
+  std::optional<double> error_abs;        ///< Largest error in scene units.
+  /// Each mesh to the same ratio, instead of one queue that spends triangles where they matter.
+  bool per_mesh = false;
+
+  Placement placement = Placement::optimal;
+  /// Weights of attributes against position, free of the model's scale. 1 for texture coordinates: a
+  /// texture that slides by some length counts as a surface that moves by it.
+  double uv_weight = 1.0;
+  double normal_weight = 1.0;
+  double color_weight = 1.0;
+  /// Weight of the planes that hold open boundaries and seams in place.
+  double boundary_weight = 1.0;
+  double seam_weight = 1.0;
+  /// Never move or remove vertices on open boundaries.
+  bool lock_boundary = false;
+  /// Never change the topology: no component vanishes, no hole or handle closes.
+  bool keep_topology = false;
+};
+OptionList describe(SimplifyOptions& options);
+
+/// How much each vertex matters, [#meshes][#V of the mesh] or empty: multiplies the vertex's error. 1
+/// is neutral, more keeps, less gives away; infinity locks the vertex where it is.
+using Importance = std::vector<VertexField>;
+
+enum class StopReason {
+  target,     ///< The triangle count was reached.
+  error,      ///< The next step would exceed the error bound.
+  stuck,      ///< No legal collapse is left; see `BlockCounts`.
+  cancelled,  ///< The caller asked to stop; the result is the level reached.
+};
+const char* to_string(StopReason reason);
+
+/// Why the edges that are left could not collapse, one reason each.
+struct BlockCounts {
+  std::uint64_t edges = 0;     ///< Edges left in all.
+  std::uint64_t topology = 0;  ///< Would pinch the surface or change its topology (`keep_topology`).
+  std::uint64_t flip = 0;      ///< Would fold the surface or the texture over.
+  std::uint64_t locked = 0;    ///< An end is locked (importance, `lock_boundary`).
+  std::uint64_t last = 0;      ///< Belong to the last triangles of a component.
+};
+
+struct SimplifyResult {
+  Model model;            ///< The level asked for; all but the meshes' triangles untouched.
+  CollapseRecord record;  ///< Steps down to that level, over `model.meshes` in order.
+  std::uint64_t triangles_before = 0;
+  std::uint64_t triangles_after = 0;
+  std::uint64_t triangles_target = 0;  ///< What the count targets came to; 0 if only an error bound.
+  /// Error of the result: the largest root-mean-square distance, over the pieces of surface that a
+  /// vertex stands for, between the original surface and the result, attribute deviations included
+  /// by their weights. An estimate of the engine, not a measured Hausdorff distance.
+  double error_rel = 0;  ///< As a fraction of the scene's diagonal.
+  double error_abs = 0;  ///< In scene units.
+  StopReason stop = StopReason::target;
+  BlockCounts blocked;   ///< Filled if `stop` is `stuck`.
+  double seconds = 0;    ///< Wall time.
+};
+
+/// Collapses edges of all meshes of `model` until a target is reached, cheapest first over the whole
+/// scene; a mesh is weighed by the largest scale at which a node shows it and counts once however
+/// often it is shown. (Garland & Heckbert 1997; attributes after Hoppe 1999.) See collapse_engine.h
+/// for how.
+///
+/// Throws Error(usage) for options out of range, no target at all, or an importance field of the
+/// wrong size or with values that are NaN or negative. Not reaching a target is a result.
+/// Deterministic for any number of threads.
+SimplifyResult simplify(const Model& model, const SimplifyOptions& options, const Importance& importance,
+                        Context& context);
+
+}  // namespace fovea
