@@ -20,10 +20,22 @@ Mat4 compose(Vec3d t, Quat q, Vec3d s) {
   const double yy = q.y * y2, yz = q.y * z2, zz = q.z * z2;
   const double wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
   Mat4 r;
-  r.m = {(1 - yy - zz) * s.x, (xy + wz) * s.x,     (xz - wy) * s.x,     0,
-         (xy - wz) * s.y,     (1 - xx - zz) * s.y, (yz + wx) * s.y,     0,
-         (xz + wy) * s.z,     (yz - wx) * s.z,     (1 - xx - yy) * s.z, 0,
-         t.x,                 t.y,                 t.z,                 1};
+  r.m = {(1 - yy - zz) * s.x,
+         (xy + wz) * s.x,
+         (xz - wy) * s.x,
+         0,
+         (xy - wz) * s.y,
+         (1 - xx - zz) * s.y,
+         (yz + wx) * s.y,
+         0,
+         (xz + wy) * s.z,
+         (yz - wx) * s.z,
+         (1 - xx - yy) * s.z,
+         0,
+         t.x,
+         t.y,
+         t.z,
+         1};
   return r;
 }
 
@@ -32,8 +44,7 @@ Vec3d transform_point(const Mat4& a, Vec3d p) {
 }
 
 Vec3d transform_direction(const Mat4& a, Vec3d d) {
-  return {a(0, 0) * d.x + a(0, 1) * d.y + a(0, 2) * d.z,
-          a(1, 0) * d.x + a(1, 1) * d.y + a(1, 2) * d.z,
+  return {a(0, 0) * d.x + a(0, 1) * d.y + a(0, 2) * d.z, a(1, 0) * d.x + a(1, 1) * d.y + a(1, 2) * d.z,
           a(2, 0) * d.x + a(2, 1) * d.y + a(2, 2) * d.z};
 }
 
@@ -52,8 +63,8 @@ Mat4 affine_inverse(const Mat4& a) {
   const Vec3d r0 = cross(c1, c2) / det, r1 = cross(c2, c0) / det, r2 = cross(c0, c1) / det;
   const Vec3d t{a(0, 3), a(1, 3), a(2, 3)};
   Mat4 r;
-  r.m = {r0.x, r1.x, r2.x, 0, r0.y, r1.y, r2.y, 0, r0.z, r1.z, r2.z, 0,
-         -dot(r0, t), -dot(r1, t), -dot(r2, t), 1};
+  r.m = {r0.x, r1.x, r2.x, 0, r0.y,        r1.y,        r2.y,        0,
+         r0.z, r1.z, r2.z, 0, -dot(r0, t), -dot(r1, t), -dot(r2, t), 1};
   return r;
 }
 

@@ -52,42 +52,39 @@ std::string Option::range_text() const {
 }
 
 std::string Option::value_text() const {
-  return std::visit(
-      Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
-                 [](const std::string* v) { return *v; },
-                 [](const Choice& c) { return c.names.at(static_cast<std::size_t>(c.get())); },
-                 [](const auto* v) {
-                   if constexpr (requires { v->has_value(); }) {
-                     return v->has_value() ? fmt::format("{}", **v) : std::string("none");
-                   } else {
-                     return fmt::format("{}", *v);
-                   }
-                 }},
-      value);
+  return std::visit(Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
+                               [](const std::string* v) { return *v; },
+                               [](const Choice& c) { return c.names.at(static_cast<std::size_t>(c.get())); },
+                               [](const auto* v) {
+                                 if constexpr (requires { v->has_value(); }) {
+                                   return v->has_value() ? fmt::format("{}", **v) : std::string("none");
+                                 } else {
+                                   return fmt::format("{}", *v);
+                                 }
+                               }},
+                    value);
 }
 
 void Option::parse(const std::string& text) {
-  std::visit(
-      Overloaded{
-          [&](bool* v) {
-            if (text != "true" && text != "false") bad_value(*this, text);
-            *v = text == "true";
-          },
-          [&](std::string* v) { *v = text; },
-          [&](Choice& c) {
-            const auto at = std::find(c.names.begin(), c.names.end(), text);
-            if (at == c.names.end()) bad_value(*this, text);
-            c.set(static_cast<int>(at - c.names.begin()));
-          },
-          [&](auto* v) {
-            using T = std::decay_t<decltype(*v)>;
-            if constexpr (requires { typename T::value_type; }) {
-              *v = parse_number<typename T::value_type>(*this, text);
-            } else {
-              *v = parse_number<T>(*this, text);
-            }
-          }},
-      value);
+  std::visit(Overloaded{[&](bool* v) {
+                          if (text != "true" && text != "false") bad_value(*this, text);
+                          *v = text == "true";
+                        },
+                        [&](std::string* v) { *v = text; },
+                        [&](Choice& c) {
+                          const auto at = std::find(c.names.begin(), c.names.end(), text);
+                          if (at == c.names.end()) bad_value(*this, text);
+                          c.set(static_cast<int>(at - c.names.begin()));
+                        },
+                        [&](auto* v) {
+                          using T = std::decay_t<decltype(*v)>;
+                          if constexpr (requires { typename T::value_type; }) {
+                            *v = parse_number<typename T::value_type>(*this, text);
+                          } else {
+                            *v = parse_number<T>(*this, text);
+                          }
+                        }},
+             value);
   check();
 }
 
@@ -117,8 +114,8 @@ void check(const OptionList& options) {
   if (!faults.empty()) throw Error(ErrorKind::usage, faults, {}, hint);
 }
 
-std::vector<std::string> nearest_names(const std::string& name,
-                                       const std::vector<std::string>& candidates, int count) {
+std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,
+                                       int count) {
   const auto edit_distance = [&](const std::string& other) {
     std::vector<std::size_t> row(other.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});

@@ -22,12 +22,12 @@ struct Option {
   using Value = std::variant<bool*, std::int64_t*, double*, std::string*, std::optional<std::int64_t>*,
                              std::optional<double>*, Choice>;
 
-  std::string name;   ///< Kebab case without dashes in front: "uv-weight".
-  std::string help;   ///< One sentence: meaning and the reason of the default.
+  std::string name;  ///< Kebab case without dashes in front: "uv-weight".
+  std::string help;  ///< One sentence: meaning and the reason of the default.
   Value value;
-  std::string unit;   ///< "triangles", "of the diagonal"; empty if it has none.
-  double low = -std::numeric_limits<double>::infinity();   ///< Smallest allowed number.
-  double high = std::numeric_limits<double>::infinity();   ///< Largest allowed number.
+  std::string unit;  ///< "triangles", "of the diagonal"; empty if it has none.
+  double low = -std::numeric_limits<double>::infinity();  ///< Smallest allowed number.
+  double high = std::numeric_limits<double>::infinity();  ///< Largest allowed number.
 
   /// "0..1", ">= 0", "quadric|entropy", or empty when anything goes.
   std::string range_text() const;
@@ -55,7 +55,7 @@ void check(const OptionList& options);
 
 /// Those of `candidates` nearest to `name` by edit distance, best first; at most `count`, and none
 /// that differs in more than half of its letters. For "unknown option" messages.
-std::vector<std::string> nearest_names(const std::string& name,
-                                       const std::vector<std::string>& candidates, int count = 1);
+std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,
+                                       int count = 1);
 
 }  // namespace fovea

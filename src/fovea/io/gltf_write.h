@@ -20,7 +20,7 @@ struct GltfOutput {
 /// equal data is stored once. Untouched elements are written from their own JSON. Attributes are
 /// stored as they were read or as `options` say; indices as small as fits. The extension lists are
 /// made anew from what the file uses.
-GltfOutput write_gltf(const Model& model, bool binary, const std::string& stem,
-                      const WriteOptions& options, Context& context);
+GltfOutput write_gltf(const Model& model, bool binary, const std::string& stem, const WriteOptions& options,
+                      Context& context);
 
 }  // namespace fovea

@@ -14,7 +14,7 @@ struct ImageInfo {
   std::string mime_type;  ///< By content: image/png, image/jpeg, image/webp, image/ktx2; else empty.
   int width = 0;
   int height = 0;
-  int channels = 0;       ///< 0 if the header does not tell.
+  int channels = 0;  ///< 0 if the header does not tell.
 };
 
 /// Never throws: unknown or damaged headers give an empty mime_type.

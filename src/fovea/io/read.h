@@ -16,7 +16,7 @@ namespace fovea {
 /// Error(limit) that names the option.
 struct ReadOptions {
   std::int64_t max_file_bytes = std::int64_t{8} << 30;  ///< Of any one file, images included.
-  std::int64_t max_elements = 400'000'000;   ///< Of any one accessor or index list: vertices, indices, keys.
+  std::int64_t max_elements = 400'000'000;  ///< Of any one accessor or index list: vertices, indices, keys.
   std::int64_t max_total_bytes = std::int64_t{16} << 30;  ///< Of all decoded data of one model.
 };
 OptionList describe(ReadOptions& options);

@@ -42,7 +42,8 @@ double encode_component(float value, Storage storage) {
   return with_type(storage.type, [&](auto zero) {
     using Limits = std::numeric_limits<decltype(zero)>;
     const double top = static_cast<double>(Limits::max());
-    const double bottom = storage.normalized && Limits::is_signed ? -top : static_cast<double>(Limits::lowest());
+    const double bottom =
+        storage.normalized && Limits::is_signed ? -top : static_cast<double>(Limits::lowest());
     const double scaled = storage.normalized ? value * top : static_cast<double>(value);
     return std::clamp(std::round(scaled), bottom, top);
   });

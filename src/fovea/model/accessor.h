@@ -28,9 +28,9 @@ double encode_component(float value, Storage storage);
 /// without looking inside (animation samplers, points and lines), bit for bit.
 struct Accessor {
   Storage storage;
-  int width = 1;            ///< Components per element: 1 to 4 for SCALAR to VEC4, 4/9/16 for MAT2/3/4.
-  bool matrix = false;      ///< True for MAT2, MAT3, MAT4.
-  std::size_t count = 0;    ///< Elements.
+  int width = 1;                 ///< Components per element: 1 to 4 for SCALAR to VEC4, 4/9/16 for MAT2/3/4.
+  bool matrix = false;           ///< True for MAT2, MAT3, MAT4.
+  std::size_t count = 0;         ///< Elements.
   std::vector<std::byte> bytes;  ///< [count × width × size_of(type)]; matrix columns without padding.
 
   /// The numbers as they are meant: [count × width].

@@ -22,7 +22,10 @@ struct Image {
 
   Image() = default;
   Image(int w, int h, int c, ColorEncoding e)
-      : width(w), height(h), channels(c), encoding(e),
+      : width(w),
+        height(h),
+        channels(c),
+        encoding(e),
         pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c)) {}
   T* at(int x, int y) { return pixels.data() + offset(x, y); }
   const T* at(int x, int y) const { return pixels.data() + offset(x, y); }
@@ -41,10 +44,10 @@ using ImageF = Image<float>;         ///< 0 … 1, beyond for high dynamic range
 /// back bit for bit.
 struct EncodedImage {
   std::string name;
-  std::string mime_type;             ///< "image/png", "image/jpeg", "image/webp", "image/ktx2", ...
-  std::string uri;                   ///< Relative path if it came from a file of its own; else empty.
-  std::vector<std::uint8_t> bytes;   ///< The encoded file.
-  std::string json;                  ///< glTF: the image object as read.
+  std::string mime_type;            ///< "image/png", "image/jpeg", "image/webp", "image/ktx2", ...
+  std::string uri;                  ///< Relative path if it came from a file of its own; else empty.
+  std::vector<std::uint8_t> bytes;  ///< The encoded file.
+  std::string json;                 ///< glTF: the image object as read.
   friend bool operator==(const EncodedImage&, const EncodedImage&) = default;
 };
 

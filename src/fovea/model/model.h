@@ -53,9 +53,9 @@ struct Scene {
 
 struct Skin {
   std::string name;
-  std::vector<int> joints;                ///< Nodes.
+  std::vector<int> joints;  ///< Nodes.
   int skeleton = -1;
-  std::optional<Accessor> inverse_bind;   ///< MAT4 per joint; identity if none.
+  std::optional<Accessor> inverse_bind;  ///< MAT4 per joint; identity if none.
   std::string json;
 };
 
@@ -70,8 +70,8 @@ struct AnimationSampler {
 
 struct AnimationChannel {
   int sampler = -1;
-  int node = -1;      ///< -1 if an extension names the target.
-  std::string path;   ///< "translation", "rotation", "scale", "weights", "pointer".
+  int node = -1;     ///< -1 if an extension names the target.
+  std::string path;  ///< "translation", "rotation", "scale", "weights", "pointer".
   std::string json;
 };
 
@@ -122,7 +122,7 @@ std::vector<Mat4> world_transforms(const Model& model);
 
 /// For each mesh the world transforms of its instances, over all nodes that show it, in node order:
 /// of the default scene if there is one, else of all nodes. A mesh that no node shows has none. A
-/// skinned instance has the transform of the identity: glTF ignores the node's own.
+/// skinned instance is placed by its first joint (joint · inverse bind): glTF ignores the node's own.
 std::vector<std::vector<Mat4>> mesh_instances(const Model& model);
 
 /// Bounding box of all instances of all meshes in their rest pose, in world space.

@@ -19,21 +19,24 @@ enum class Semantic { uv, normal, tangent, color, joints, weights, custom };
 /// holds there. Two corners of a vertex that use different values make a *seam* of this layer and of
 /// this layer only: a cut in the texture does not tear the normals.
 ///
-/// Invariant: a value is used by corners of one vertex only.
+/// Invariant: a value is used by corners of one vertex only; a texture coordinate also by triangles of
+/// one orientation in the texture only, so that the line where a texture is mirrored is a seam.
 struct AttributeLayer {
   Semantic semantic = Semantic::custom;
-  int set = 0;         ///< n of TEXCOORD_n, COLOR_n, JOINTS_n, WEIGHTS_n; 0 otherwise.
-  std::string name;    ///< Name in the file for `custom`, empty otherwise.
-  int width = 0;       ///< Floats per value: uv 2, normal 3, tangent 4, colour 3 or 4, joints 4, ...
-  Storage storage;     ///< How the file stored it, so that it can be stored like that again.
-  std::vector<float> values;          ///< [#values × width]
+  int set = 0;                ///< n of TEXCOORD_n, COLOR_n, JOINTS_n, WEIGHTS_n; 0 otherwise.
+  std::string name;           ///< Name in the file for `custom`, empty otherwise.
+  int width = 0;              ///< Floats per value: uv 2, normal 3, tangent 4, colour 3 or 4, joints 4, ...
+  Storage storage;            ///< How the file stored it, so that it can be stored like that again.
+  std::vector<float> values;  ///< [#values × width]
   std::vector<ValueId> corner_value;  ///< [#F × 3]; none where the corner's part lacks the layer.
   /// Morph targets: what each adds to `values`, [#targets][#values × width]; an empty vector for a
   /// target that leaves the layer alone. Empty altogether if no target touches it.
   std::vector<std::vector<float>> morphs;
 
   std::size_t size() const { return width > 0 ? values.size() / static_cast<std::size_t>(width) : 0; }
-  const float* value(ValueId id) const { return values.data() + id.index() * static_cast<std::size_t>(width); }
+  const float* value(ValueId id) const {
+    return values.data() + id.index() * static_cast<std::size_t>(width);
+  }
   float* value(ValueId id) { return values.data() + id.index() * static_cast<std::size_t>(width); }
 };
 
@@ -64,13 +67,13 @@ struct Part {
 /// vertex. Everything else lives in the layers. Triangles are counter-clockwise seen from outside and
 /// never use a vertex twice.
 struct TriMesh {
-  std::vector<Vec3f> positions;                      ///< [#V]
-  Storage position_storage;                          ///< How the file stored positions.
-  std::vector<std::array<VertexId, 3>> triangles;    ///< [#F × 3]
-  std::vector<std::uint32_t> face_part;              ///< [#F], index into `parts`.
-  std::vector<Part> parts;                           ///< In file order.
+  std::vector<Vec3f> positions;                    ///< [#V]
+  Storage position_storage;                        ///< How the file stored positions.
+  std::vector<std::array<VertexId, 3>> triangles;  ///< [#F × 3]
+  std::vector<std::uint32_t> face_part;            ///< [#F], index into `parts`.
+  std::vector<Part> parts;                         ///< In file order.
   std::vector<AttributeLayer> layers;
-  std::vector<std::vector<Vec3f>> position_morphs;   ///< [#targets][#V], what each target adds.
+  std::vector<std::vector<Vec3f>> position_morphs;  ///< [#targets][#V], what each target adds.
   /// Source vertex -> vertex, over all triangle parts in file order, each with its vertices in file
   /// order; none for source vertices that no triangle uses. Empty if the mesh has no source.
   std::vector<VertexId> source_vertex;

@@ -12,7 +12,7 @@ namespace fovea {
 struct VertexArray {
   Semantic semantic = Semantic::custom;
   int set = 0;
-  std::string name;           ///< For `custom`.
+  std::string name;  ///< For `custom`.
   int width = 0;
   Storage storage;
   std::vector<float> values;  ///< [#vertices × width], decoded.
@@ -21,11 +21,11 @@ struct VertexArray {
 /// A run of triangles as files and GPUs hold it: every vertex has one value of every attribute.
 struct SplitPart {
   Part part;
-  std::vector<Vec3f> positions;                        ///< [#vertices]
+  std::vector<Vec3f> positions;  ///< [#vertices]
   Storage position_storage;
-  std::vector<std::uint32_t> indices;                  ///< [#triangles × 3]
+  std::vector<std::uint32_t> indices;  ///< [#triangles × 3]
   std::vector<VertexArray> attributes;
-  std::vector<std::vector<Vec3f>> position_morphs;     ///< [#targets][#vertices]; empty if absent.
+  std::vector<std::vector<Vec3f>> position_morphs;  ///< [#targets][#vertices]; empty if absent.
   /// [#targets]: what each target adds to which attributes (semantic, set, values).
   std::vector<std::vector<VertexArray>> attribute_morphs;
 };

@@ -19,10 +19,10 @@ enum class StepKind : std::uint8_t {
 /// One step of a simplification. Ids are those of the mesh that was simplified.
 struct CollapseStep {
   StepKind kind = StepKind::collapse;
-  std::uint32_t mesh = 0;       ///< Index into the meshes that were simplified together.
-  VertexId removed, kept;       ///< collapse: `removed` became `kept`; vanish: none.
-  Vec3f position;               ///< collapse: where `kept` is from now on.
-  float error_rel = 0;          ///< Largest error of all steps so far, of the scene's diagonal.
+  std::uint32_t mesh = 0;  ///< Index into the meshes that were simplified together.
+  VertexId removed, kept;  ///< collapse: `removed` became `kept`; vanish: none.
+  Vec3f position;          ///< collapse: where `kept` is from now on.
+  float error_rel = 0;     ///< Largest error of all steps so far, of the scene's diagonal.
   // Ends of this step's runs in the record's lists; they begin where the step before it ends.
   std::uint32_t faces_end = 0, merges_end = 0, writes_end = 0, floats_end = 0;
 };

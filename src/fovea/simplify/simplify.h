@@ -77,8 +77,8 @@ struct SimplifyResult {
   double error_rel = 0;  ///< As a fraction of the scene's diagonal.
   double error_abs = 0;  ///< In scene units.
   StopReason stop = StopReason::target;
-  BlockCounts blocked;   ///< Filled if `stop` is `stuck`.
-  double seconds = 0;    ///< Wall time.
+  BlockCounts blocked;  ///< Filled if `stop` is `stuck`.
+  double seconds = 0;   ///< Wall time.
 };
 
 /// Collapses edges of all meshes of `model` until a target is reached, cheapest first over the whole
