@@ -56,8 +56,8 @@ TriMesh open_cylinder(int around, int along);
 TriMesh icosphere(int subdivisions);
 /// (major, minor) torus in around × across quads with a uv seam in both directions: Euler number 0.
 TriMesh torus(int around, int across);
-/// Strip of 2 · half quads whose uv is mirrored about its middle column: no seam in the values, but
-/// the texture turns over there.
+/// Strip of 2 · half quads whose uv is mirrored about its middle column. Both halves use the same uv
+/// values there; `weld` makes a seam of that column, as the texture turns over.
 TriMesh mirrored_strip(int half);
 /// Two triangles that share one vertex and nothing else.
 TriMesh bow_tie();
