@@ -23,8 +23,8 @@ Overloaded(F...) -> Overloaded<F...>;
 
 [[noreturn]] void bad_value(const Option& option, const std::string& text) {
   const std::string range = option.range_text();
-  throw Error(ErrorKind::usage, fmt::format("'{}' is not a value for it", text), "--" + option.name,
-              range.empty() ? "" : "allowed: " + range);
+  throw Error(ErrorKind::usage, fmt::format("'{}' is not a value for it", text),
+              fmt::format("--{}", option.name), range.empty() ? "" : "allowed: " + range);
 }
 
 template <class Number>
@@ -89,12 +89,13 @@ void Option::parse(const std::string& text) {
 }
 
 void Option::check() const {
-  std::visit(Overloaded{[&](const std::int64_t* v) { check_range(*this, static_cast<double>(*v)); },
-                        [&](const double* v) { check_range(*this, *v); },
-                        [&](const std::optional<std::int64_t>* v) {
+  // The pointers are taken as they are stored: any conversion would lose against `const auto&`.
+  std::visit(Overloaded{[&](std::int64_t* v) { check_range(*this, static_cast<double>(*v)); },
+                        [&](double* v) { check_range(*this, *v); },
+                        [&](std::optional<std::int64_t>* v) {
                           if (v->has_value()) check_range(*this, static_cast<double>(**v));
                         },
-                        [&](const std::optional<double>* v) {
+                        [&](std::optional<double>* v) {
                           if (v->has_value()) check_range(*this, **v);
                         },
                         [](const auto&) {}},
@@ -108,7 +109,7 @@ void check(const OptionList& options) {
       option.check();
     } catch (const Error& e) {
       faults += (faults.empty() ? "" : "; ") + std::string(e.what());
-      hint += (hint.empty() ? "" : "; ") + ("--" + option.name + " " + e.hint());
+      hint += (hint.empty() ? "" : "; ") + fmt::format("--{} {}", option.name, e.hint());
     }
   }
   if (!faults.empty()) throw Error(ErrorKind::usage, faults, {}, hint);

@@ -1,5 +1,6 @@
 #include "fovea/base/parallel.h"
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -15,7 +16,8 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain,
   const auto run_chunk = [&](std::size_t chunk) {
     body(chunk * grain, std::min(count, (chunk + 1) * grain));
   };
-  const int threads = context.thread_count();
+  // An arena larger than the machine gains nothing and makes TBB print a warning.
+  const int threads = std::min(context.thread_count(), oneapi::tbb::info::default_concurrency());
   if (threads == 1 || chunks == 1) {
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) run_chunk(chunk);
     return;
