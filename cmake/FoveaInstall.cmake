@@ -1,5 +1,5 @@
 # Install rules: libraries and headers with a CMake package (find_package(fovea CONFIG), target
-# fovea::fovea), and the command line tool if it is built.
+# fovea::fovea). The command line tool installs itself.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -21,7 +21,3 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/fovea-config-version.cmak
 install(FILES ${PROJECT_BINARY_DIR}/fovea-config.cmake ${PROJECT_BINARY_DIR}/fovea-config-version.cmake
   ${CMAKE_CURRENT_LIST_DIR}/FindWebP.cmake DESTINATION ${fovea_package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-
-if(TARGET fovea_cli)
-  install(TARGETS fovea_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()

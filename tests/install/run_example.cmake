@@ -1,0 +1,15 @@
+# cmake -DFOVEA=... -DPROGRAM=... -DFOLDER=... -P run_example.cmake: makes a sample with the installed
+# tool and simplifies it with the example.
+set(input ${FOLDER}/vase.glb)
+set(output ${FOLDER}/vase_small.glb)
+file(REMOVE ${output})
+execute_process(COMMAND ${FOVEA} sample vase -o ${input} --force COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${PROGRAM} ${input} ${output} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+message("${text}")
+if(NOT text MATCHES "([0-9]+) triangles became ([0-9]+)")
+  message(FATAL_ERROR "the example said nothing of triangles")
+endif()
+math(EXPR left_of_1000 "1000 * ${CMAKE_MATCH_2} / ${CMAKE_MATCH_1}")
+if(left_of_1000 GREATER 100 OR NOT EXISTS ${output})
+  message(FATAL_ERROR "${left_of_1000} of 1000 triangles are left, a tenth was asked for")
+endif()

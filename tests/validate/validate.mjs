@@ -1,0 +1,111 @@
+// Simplifies models with the command line and puts every output through the Khronos glTF validator.
+//
+//   node validate.mjs FOVEA OUTPUT-FOLDER sample NAME     a sample model, in every way of writing
+//   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER at 10 %
+//
+// Exit status: 0 all valid, 1 something is not, 77 (skipped) if FOVEA_DATA is not set.
+
+import { execFile } from 'node:child_process';
+import fs from 'node:fs';
+import path from 'node:path';
+import validator from 'gltf-validator';
+
+const SKIPPED = 77;
+// Exit codes of fovea (fovea/base/error.h).
+const NOT_REACHED = 8;
+const UNSUPPORTED = 5;
+const REFUSALS = [3, 4, UNSUPPORTED, 6];
+
+const [fovea, outputFolder, mode, name] = process.argv.slice(2);
+
+function run(...words) {
+  return new Promise((resolve) => {
+    execFile(fovea, words, { timeout: 300_000 }, (error, stdout, stderr) => {
+      resolve({ code: error ? (error.code ?? error.signal) : 0, text: stderr.trim() });
+    });
+  });
+}
+
+async function validate(file) {
+  const folder = path.dirname(file);
+  const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)), {
+    uri: path.basename(file),
+    maxIssues: 0,
+    externalResourceFunction: async (uri) =>
+      new Uint8Array(fs.readFileSync(path.join(folder, decodeURIComponent(uri)))),
+  });
+  return {
+    errors: report.issues.messages.filter((message) => message.severity === 0),
+    triangles: report.info?.totalTriangleCount ?? 0,
+  };
+}
+
+// Runs one simplification; returns what is wrong with it, or nothing.
+async function faultOf(input, output, ratio, ...options) {
+  const { code, text } = await run('simplify', input, '-o', output, '--ratio', String(ratio), '--force', '--quiet', ...options);
+  if (code === UNSUPPORTED && /(KHR|EXT|MSFT|[A-Z]+)_\w+/.test(text)) return null;
+  if (code !== 0 && code !== NOT_REACHED) return `exit code ${code}: ${text}`;
+  const [before, after] = [await validate(input), await validate(output)];
+  if (after.errors.length) return after.errors.slice(0, 5).map((e) => `${e.code} ${e.pointer ?? ''} ${e.message}`).join('\n    ');
+  // One triangle more is allowed: a collapse takes two, and the count asked for may be odd.
+  if (code === 0 && after.triangles > Math.ceil(ratio * before.triangles) + 1)
+    return `${after.triangles} triangles of ${before.triangles} at ratio ${ratio}`;
+  return null;
+}
+
+async function report(label, check) {
+  const fault = await check;
+  console.log(`${fault ? 'BAD ' : 'ok  '} ${label}${fault ? `\n    ${fault}` : ''}`);
+  return fault ? 1 : 0;
+}
+
+async function sampleFaults() {
+  const input = path.join(outputFolder, `${name}.glb`);
+  const made = await run('sample', name, '-o', input, '--force', '--quiet');
+  if (made.code !== 0) return report(`sample ${name}`, `exit code ${made.code}: ${made.text}`);
+  let faults = await report(`sample ${name}`, validate(input).then(({ errors }) => errors.map((e) => e.message).join('\n')));
+  const ways = [
+    ['50.glb', 0.5],
+    ['10.glb', 0.1],
+    ['2.glb', 0.02],
+    ['10.gltf', 0.1],
+    ['10-quantized.glb', 0.1, '--quantize'],
+    ['10-meshopt.glb', 0.1, '--compression', 'meshopt'],
+    ['10-quantized-meshopt.glb', 0.1, '--quantize', '--compression', 'meshopt'],
+  ];
+  for (const [suffix, ratio, ...options] of ways) {
+    const output = path.join(outputFolder, `${name}-${suffix}`);
+    faults += await report(path.basename(output), faultOf(input, output, ratio, ...options));
+  }
+  return faults;
+}
+
+// A file that the validator refuses may be refused or repaired, but must not end in a crash or a hang.
+async function malformedFault(input, output) {
+  const { code, text } = await run('simplify', input, '-o', output, '--ratio', '0.1', '--force', '--quiet');
+  return [0, NOT_REACHED, ...REFUSALS].includes(code) ? null : `exit code ${code}: ${text}`;
+}
+
+async function corpusFaults() {
+  const folder = path.join(process.env.FOVEA_DATA, name);
+  const files = fs.readdirSync(folder, { recursive: true }).filter((file) => /\.gl(b|tf)$/.test(file)).sort();
+  if (!files.length) return report(folder, 'no glTF files');
+  let faults = 0;
+  for (const file of files) {
+    const input = path.join(folder, file);
+    const output = path.join(outputFolder, file.replaceAll(path.sep, '_').replace(/\.gltf$/, '.glb'));
+    const valid = await validate(input).then(({ errors }) => errors.length === 0, () => false);
+    faults += valid
+      ? await report(file, faultOf(input, output, 0.1))
+      : await report(`${file} (malformed)`, malformedFault(input, output));
+  }
+  return faults;
+}
+
+if (mode === 'corpus' && !process.env.FOVEA_DATA) {
+  console.log('skipped: FOVEA_DATA is not set');
+  process.exit(SKIPPED);
+}
+fs.mkdirSync(outputFolder, { recursive: true });
+const faults = await (mode === 'sample' ? sampleFaults() : corpusFaults());
+process.exit(faults ? 1 : 0);
