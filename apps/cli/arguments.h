@@ -1,0 +1,57 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fovea/base/options.h"
+
+namespace fovea::cli {
+
+/// An argument without a flag: its name as help shows it, and where its text goes.
+struct Positional {
+  std::string name;
+  std::string help;
+  std::string* value = nullptr;
+  bool required = true;
+};
+
+/// Options under one heading of `--help`.
+struct OptionGroup {
+  std::string title;
+  OptionList options;
+  std::vector<std::string> defaults;  ///< `value_text` of each option before parsing.
+};
+
+/// The arguments of one verb: declared once, then parsed, checked, and shown as help, documentation
+/// and report. Everything known of an option comes from its `fovea::Option`.
+class Arguments {
+ public:
+  void add(Positional positional);
+  /// Adds a heading with options; the options' values must outlive this object. Adding a title again
+  /// appends to it. Throws Error(internal) if a flag exists already.
+  void add(const std::string& title, OptionList options);
+  /// An extra hint for when the value given to an option is refused.
+  void add_hint(const std::string& option, std::string hint);
+
+  /// Sets all values from the words after the verb. Throws Error(usage) with the nearest name for an
+  /// unknown flag, with the range for a bad value, for a missing or surplus argument.
+  void parse(const std::vector<std::string>& words, const std::string& verb);
+
+  const std::vector<Positional>& positionals() const { return positionals_; }
+  const std::vector<OptionGroup>& groups() const { return groups_; }
+
+ private:
+  std::vector<std::string> flags() const;
+  [[noreturn]] void refuse(const std::string& word, const std::string& verb) const;
+  void set(Option& option, const std::string& text) const;
+
+  std::vector<Positional> positionals_;
+  std::vector<OptionGroup> groups_;
+  std::map<std::string, std::string> hints_;
+};
+
+/// "-o" for the option "output", ...; empty for those without a short flag.
+std::string short_flag(const std::string& option);
+
+}  // namespace fovea::cli

@@ -1,0 +1,242 @@
+#include "file_bytes.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "fovea/base/error.h"
+#include "fovea/io/read.h"
+
+namespace fovea::cli {
+
+namespace fs = std::filesystem;
+using Plain = nlohmann::json;
+
+namespace {
+
+// In order of precedence: a buffer view with several uses counts for the last of them here.
+enum class Kind { other, animation, images, geometry };
+
+const Plain& member(const Plain& json, const char* name) {
+  static const Plain nothing;
+  if (!json.is_object()) return nothing;
+  const auto at = json.find(name);
+  return at == json.end() ? nothing : *at;
+}
+
+std::uint64_t number(const Plain& json) { return json.is_number_unsigned() ? json.get<std::uint64_t>() : 0; }
+
+bool is_external(const Plain& element) {
+  const Plain& uri = member(element, "uri");
+  return uri.is_string() && uri.get_ref<const std::string&>().rfind("data:", 0) != 0;
+}
+
+/// Sorts the bytes of a glTF file by what they are for.
+class GltfMeter {
+ public:
+  explicit GltfMeter(const Plain& root)
+      : root_(root), kinds_(member(root, "bufferViews").size(), Kind::other) {
+    mark_meshes();
+    mark_images();
+    mark_animation();
+  }
+
+  ByteCounts bytes() const {
+    std::array<std::uint64_t, 4> sums{};
+    for (std::size_t i = 0; i < kinds_.size(); ++i)
+      sums[static_cast<std::size_t>(kinds_[i])] += view_bytes(i);
+    ByteCounts counts;
+    counts.animation = sums[1];
+    counts.images = sums[2];
+    counts.geometry = sums[3];
+    for (const Plain& image : member(root_, "images")) {
+      const Plain& uri = member(image, "uri");
+      if (uri.is_string() && !is_external(image)) counts.images += uri.get_ref<const std::string&>().size();
+    }
+    return counts;
+  }
+
+  std::uint64_t external_buffer_bytes() const {
+    std::uint64_t sum = 0;
+    for (const Plain& buffer : member(root_, "buffers")) {
+      if (is_external(buffer)) sum += number(member(buffer, "byteLength"));
+    }
+    return sum;
+  }
+
+  bool image_is_external(std::size_t index) const {
+    const Plain& images = member(root_, "images");
+    return index < images.size() && is_external(images[index]);
+  }
+
+ private:
+  void mark_view(const Plain& index, Kind kind) {
+    if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= kinds_.size()) return;
+    Kind& at = kinds_[index.get<std::size_t>()];
+    at = std::max(at, kind);
+  }
+
+  void mark_accessor(const Plain& index, Kind kind) {
+    const Plain& accessors = member(root_, "accessors");
+    if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) return;
+    const Plain& accessor = accessors[index.get<std::size_t>()];
+    mark_view(member(accessor, "bufferView"), kind);
+    const Plain& sparse = member(accessor, "sparse");
+    mark_view(member(member(sparse, "indices"), "bufferView"), kind);
+    mark_view(member(member(sparse, "values"), "bufferView"), kind);
+  }
+
+  void mark_meshes() {
+    for (const Plain& mesh : member(root_, "meshes")) {
+      for (const Plain& primitive : member(mesh, "primitives")) {
+        const Plain& mode = member(primitive, "mode");
+        const bool triangles = mode.is_null() || number(mode) >= 4;
+        if (triangles) mark_primitive(primitive);
+      }
+    }
+  }
+
+  void mark_primitive(const Plain& primitive) {
+    mark_accessor(member(primitive, "indices"), Kind::geometry);
+    for (const Plain& attribute : member(primitive, "attributes")) mark_accessor(attribute, Kind::geometry);
+    for (const Plain& target : member(primitive, "targets")) {
+      for (const Plain& attribute : target) mark_accessor(attribute, Kind::geometry);
+    }
+    const Plain& draco = member(member(primitive, "extensions"), "KHR_draco_mesh_compression");
+    mark_view(member(draco, "bufferView"), Kind::geometry);
+  }
+
+  void mark_images() {
+    for (const Plain& image : member(root_, "images")) mark_view(member(image, "bufferView"), Kind::images);
+  }
+
+  void mark_animation() {
+    for (const Plain& animation : member(root_, "animations")) {
+      for (const Plain& sampler : member(animation, "samplers")) {
+        mark_accessor(member(sampler, "input"), Kind::animation);
+        mark_accessor(member(sampler, "output"), Kind::animation);
+      }
+    }
+    for (const Plain& skin : member(root_, "skins")) {
+      mark_accessor(member(skin, "inverseBindMatrices"), Kind::animation);
+    }
+  }
+
+  // A compressed view's own length is that of the data once unpacked.
+  std::uint64_t view_bytes(std::size_t index) const {
+    const Plain& view = member(root_, "bufferViews")[index];
+    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+      const Plain& compressed = member(member(view, "extensions"), name);
+      if (compressed.is_object()) return number(member(compressed, "byteLength"));
+    }
+    return number(member(view, "byteLength"));
+  }
+
+  const Plain& root_;
+  std::vector<Kind> kinds_;
+};
+
+std::string read_text(std::ifstream& in, std::uint64_t offset, std::uint64_t size) {
+  std::string text(size, '\0');
+  in.seekg(static_cast<std::streamoff>(offset));
+  in.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+// The JSON part of a .gltf or .glb, or null.
+Plain read_json(std::ifstream& in, FileFormat format, std::uint64_t file_size) {
+  std::uint64_t offset = 0, size = file_size;
+  if (format == FileFormat::glb) {
+    const std::string head = read_text(in, 0, 20);
+    if (head.size() < 20) return {};
+    const auto byte = [&](std::size_t i) {
+      return static_cast<std::uint64_t>(static_cast<unsigned char>(head[i]));
+    };
+    offset = 20;
+    size = std::min(byte(12) | byte(13) << 8 | byte(14) << 16 | byte(15) << 24, file_size - offset);
+  }
+  return Plain::parse(read_text(in, offset, size), nullptr, false);
+}
+
+const char* name_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::gltf: return "gltf";
+    case FileFormat::glb: return "glb";
+    case FileFormat::obj: return "obj";
+    case FileFormat::ply: return "ply";
+    case FileFormat::stl: return "stl";
+    case FileFormat::other: break;
+  }
+  return "other";
+}
+
+FileBytes measure_gltf(const Plain& root, std::uint64_t main_file, const Model& model) {
+  const GltfMeter meter(root);
+  FileBytes result;
+  result.kinds = meter.bytes();
+  result.files = main_file + meter.external_buffer_bytes();
+  for (std::size_t i = 0; i < model.images.size(); ++i) {
+    if (!meter.image_is_external(i)) continue;
+    result.kinds.images += model.images[i].bytes.size();
+    result.files += model.images[i].bytes.size();
+  }
+  return result;
+}
+
+FileBytes measure_other(const fs::path& path, std::uint64_t main_file, const Model& model) {
+  FileBytes result;
+  result.files = main_file;
+  std::uint64_t inside = 0;
+  for (const EncodedImage& image : model.images) {
+    result.kinds.images += image.bytes.size();
+    if (image.uri.empty()) {
+      inside += image.bytes.size();
+    } else {
+      result.files += image.bytes.size();
+    }
+  }
+  result.kinds.geometry = main_file - std::min(main_file, inside);
+  std::error_code missing;
+  const std::uint64_t materials = fs::file_size(fs::path(path).replace_extension(".mtl"), missing);
+  if (!missing) result.files += materials;
+  return result;
+}
+
+}  // namespace
+
+FileBytes measure_file(const fs::path& path, const Model& model) {
+  std::ifstream in(path, std::ios::binary);
+  std::error_code failed;
+  const std::uint64_t size = fs::file_size(path, failed);
+  if (!in || failed) throw Error(ErrorKind::input, "cannot read the file", path.string());
+
+  std::array<char, 64> head{};
+  in.read(head.data(), head.size());
+  const auto got = static_cast<std::size_t>(in.gcount());
+  in.clear();
+  const FileFormat format = detect_format(std::as_bytes(std::span(head.data(), got)), path);
+
+  const bool gltf = format == FileFormat::gltf || format == FileFormat::glb;
+  const Plain root = gltf ? read_json(in, format, size) : Plain();
+  FileBytes result = root.is_object() ? measure_gltf(root, size, model) : measure_other(path, size, model);
+  result.format = name_of(format);
+  const std::uint64_t known = result.kinds.geometry + result.kinds.images + result.kinds.animation;
+  result.kinds.other = result.files - std::min(result.files, known);
+  return result;
+}
+
+nlohmann::ordered_json to_json(const FileBytes& bytes) {
+  return {{"files", bytes.files},
+          {"geometry", bytes.kinds.geometry},
+          {"images", bytes.kinds.images},
+          {"animation", bytes.kinds.animation},
+          {"other", bytes.kinds.other}};
+}
+
+}  // namespace fovea::cli

@@ -1,0 +1,48 @@
+#include "fovea/io/read.h"
+#include "info_report.h"
+#include "verb.h"
+
+namespace fovea::cli {
+
+namespace {
+
+class Info : public Verb {
+ public:
+  VerbText text() const override {
+    return {"info",
+            "show what is inside a model",
+            "Reads a model and lists its meshes, materials, textures, animations and where the bytes are. "
+            "Problems "
+            "that reading repaired are told as notes.",
+            {{"fovea info helmet.glb", "Tables of all that is inside."},
+             {"fovea info helmet.glb --json", "The same as one JSON object, every list complete."}}};
+  }
+
+  void declare(Arguments& arguments) override {
+    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add("Limits", describe(read_options_));
+  }
+
+  int run(Session& session) override {
+    check_input(input_);
+    const Model model =
+        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
+    const Snapshot totals = snapshot(model, measure_file(input_, model));
+    const ModelFacts facts = session.phase("inspect", [&] { return inspect(model, session.context); });
+
+    session.report["inputs"] = Json::array({file_json(input_, totals.bytes)});
+    add_info_json(session.report, model, facts, totals);
+    session.print(info_text(input_, model, facts, totals, session.verbose()));
+    return 0;
+  }
+
+ private:
+  std::string input_;
+  ReadOptions read_options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_info() { return std::make_unique<Info>(); }
+
+}  // namespace fovea::cli

@@ -1,0 +1,152 @@
+#include "session.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <system_error>
+
+#include "report.h"
+#include "text.h"
+
+namespace fovea::cli {
+
+namespace fs = std::filesystem;
+
+OptionList describe(CommonOptions& o) {
+  return {
+      {"threads", "Threads to use; 0 takes all. The result does not depend on it.", &o.threads, "", 0, 1024},
+      {"seed", "Seed of every random choice.", &o.seed, "", 0},
+      {"json", "Print one JSON object on stdout instead of text.", &o.json, ""},
+      {"quiet", "Print only errors, and data that was asked for.", &o.quiet, ""},
+      {"verbose", "Tell each phase with its time and memory; list everything.", &o.verbose, ""},
+  };
+}
+
+Option describe_output(std::string& path) {
+  return {"output", "File to write; its extension picks the format.", &path, "output"};
+}
+
+Session::Session(const CommonOptions& common) : common_(common), progress_(!common.quiet) {
+  context.threads = static_cast<int>(common.threads);
+  context.seed = static_cast<std::uint64_t>(common.seed);
+  if (progress_.active()) {
+    context.progress = [this](std::string_view phase, double fraction) {
+      progress_.show(phase, fraction);
+      return true;
+    };
+  }
+}
+
+void Session::print(const std::string& text) {
+  progress_.clear();
+  if (!common_.json) std::fputs(text.c_str(), stdout);
+}
+
+void Session::print_summary(const std::string& text) {
+  if (!common_.quiet) print(text);
+}
+
+void Session::say(const std::string& line) {
+  if (common_.quiet) return;
+  progress_.clear();
+  std::fprintf(stderr, "fovea: %s\n", line.c_str());
+}
+
+double Session::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+Session::PhaseTimer::PhaseTimer(Session& session, const std::string& name)
+    : session_(session), name_(name), start_(session.seconds()) {
+  if (session_.verbose()) session_.say(name_ + " ...");
+}
+
+Session::PhaseTimer::~PhaseTimer() {
+  const Phase phase{name_, session_.seconds() - start_, peak_memory_bytes()};
+  session_.phases_.push_back(phase);
+  session_.progress_.clear();
+  if (session_.verbose()) {
+    session_.say(fmt::format("{} {}, peak memory {}", name_, seconds_text(phase.seconds),
+                             bytes_text(phase.peak_bytes)));
+  }
+}
+
+void Session::tell_diagnostics() {
+  for (const Diagnostic& d : context.diagnostics()) {
+    const std::string count = d.count > 1 ? fmt::format(" ({} times)", count_text(d.count)) : "";
+    say(fmt::format("note: {}{}{}{}", printable(d.place), d.place.empty() ? "" : ": ", printable(d.message),
+                    count));
+  }
+}
+
+void Session::add_resources() {
+  Json& phases = report["phases"] = Json::array();
+  for (const Phase& p : phases_) {
+    phases.push_back({{"name", p.name}, {"seconds", p.seconds}, {"peak_memory_bytes", p.peak_bytes}});
+  }
+  report["seconds"] = seconds();
+  report["peak_memory_bytes"] = peak_memory_bytes();
+  report["threads"] = context.thread_count();
+}
+
+void Session::finish(int exit_code) {
+  progress_.clear();
+  if (common_.json) {
+    report["diagnostics"] = diagnostics_json(context.diagnostics());
+    add_resources();
+    report["exit_code"] = exit_code;
+    std::fputs((dump(report) + "\n").c_str(), stdout);
+  } else {
+    tell_diagnostics();
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw Error(ErrorKind::output, "cannot write", "standard output");
+  }
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB.
+}
+
+void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+  if (output.empty()) {
+    throw Error(ErrorKind::usage, "no output is named", {}, "add: -o OUTPUT, for example -o small.glb");
+  }
+  if (output == "-") {
+    throw Error(ErrorKind::usage, "standard output is not supported", "-o -",
+                "name a file: its extension picks the format");
+  }
+  const fs::path path(output);
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    throw Error(ErrorKind::output, "is a folder", output, "name a file in it");
+  }
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error(ErrorKind::output, "there is no such folder", folder.string(), "make it first");
+  }
+  if (force || !fs::exists(path, ignored)) return;
+  for (const std::string& input : inputs) {
+    if (fs::equivalent(path, input, ignored)) {
+      throw Error(ErrorKind::usage, "the output is an input", output,
+                  "--force replaces the original; there is no way back");
+    }
+  }
+  throw Error(ErrorKind::usage, "the file exists already", output, "--force replaces it");
+}
+
+void check_input(const std::string& input) {
+  if (input == "-") {
+    throw Error(ErrorKind::usage, "standard input is not supported", "-", "name a file");
+  }
+  std::error_code ignored;
+  if (fs::is_directory(input, ignored)) {
+    throw Error(ErrorKind::input, "is a folder", input, "name a model file in it");
+  }
+  if (!fs::exists(input, ignored)) throw Error(ErrorKind::input, "no such file", input);
+}
+
+}  // namespace fovea::cli

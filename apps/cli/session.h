@@ -1,0 +1,105 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/base/error.h"
+#include "fovea/base/options.h"
+#include "progress.h"
+
+namespace fovea::cli {
+
+/// Keys in the order in which they were added.
+using Json = nlohmann::ordered_json;
+
+/// Options of every verb.
+struct CommonOptions {
+  bool quiet = false;
+  bool json = false;
+  bool verbose = false;
+  std::int64_t threads = 0;
+  std::int64_t seed = 1;
+};
+OptionList describe(CommonOptions& options);
+
+/// The option of every verb that writes a file.
+Option describe_output(std::string& path);
+
+/// One run of a verb: the library's context, what is printed where, and the report for --json.
+///
+/// stdout is for data, stderr for talk. `--json` turns everything on stdout into one object.
+class Session {
+ public:
+  explicit Session(const CommonOptions& common);
+
+  Context context;
+  /// What the verb found, in the order in which it says so; `finish` adds the rest.
+  Json report = Json::object();
+
+  /// Runs `work` as a named phase: timed, told with --verbose, not begun when cancelled.
+  template <class Work>
+  auto phase(const std::string& name, Work&& work) {
+    if (context.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
+    const PhaseTimer timer(*this, name);
+    return std::forward<Work>(work)();
+  }
+
+  bool json() const { return common_.json; }
+  bool verbose() const { return common_.verbose; }
+  /// Data that the user asked for: stdout, unless --json replaces it.
+  void print(const std::string& text);
+  /// What was done: stdout, unless --quiet or --json.
+  void print_summary(const std::string& text);
+  /// Talk, a line: stderr, unless --quiet.
+  void say(const std::string& line);
+
+  double seconds() const;
+  /// Tells the diagnostics, and with --json prints the report with diagnostics, times, memory and
+  /// exit code. Throws Error(output) if stdout cannot be written.
+  void finish(int exit_code);
+
+ private:
+  struct Phase {
+    std::string name;
+    double seconds = 0;
+    std::uint64_t peak_bytes = 0;  ///< Of the process up to the phase's end.
+  };
+  class PhaseTimer {
+   public:
+    PhaseTimer(Session& session, const std::string& name);
+    ~PhaseTimer();
+    PhaseTimer(const PhaseTimer&) = delete;
+    PhaseTimer& operator=(const PhaseTimer&) = delete;
+
+   private:
+    Session& session_;
+    std::string name_;
+    double start_;
+  };
+
+  void tell_diagnostics();
+  void add_resources();
+
+  CommonOptions common_;
+  Progress progress_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::vector<Phase> phases_;
+};
+
+/// Largest resident memory of this process so far.
+std::uint64_t peak_memory_bytes();
+
+/// Checks an output path before any work is spent on it: Error(usage) for "-", for a path that is an
+/// input or exists already without `force`; Error(output) for a folder, or a place in none.
+void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
+
+/// An input path as given; Error(usage) for "-", Error(input) if it is missing or a folder.
+void check_input(const std::string& input);
+
+}  // namespace fovea::cli

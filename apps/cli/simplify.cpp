@@ -1,0 +1,108 @@
+#include "fovea/simplify/simplify.h"
+
+#include <fmt/format.h>
+
+#include "fovea/io/read.h"
+#include "fovea/io/write.h"
+#include "importance.h"
+#include "report.h"
+#include "simplify_text.h"
+#include "text.h"
+#include "verb.h"
+
+namespace fovea::cli {
+
+namespace {
+
+constexpr int kTargetMissed = 8;
+
+class Simplify : public Verb {
+ public:
+  VerbText text() const override {
+    return {"simplify",
+            "collapse edges until a target is reached",
+            "Reads a model, collapses edges where it shows least, and writes the result with everything else "
+            "untouched. Of several targets the first reached stops. Exit code 8 says that the target was not "
+            "reached; the output is written all the same.",
+            {{"fovea simplify helmet.glb -o small.glb --ratio 0.1", "Keep 10 % of the triangles."},
+             {"fovea simplify scan.ply -o scan.glb --triangles 20000", "Keep 20,000 triangles."},
+             {"fovea simplify chair.glb -o chair-lean.glb --error 0.002",
+              "As few triangles as an error of 0.2 % of the diagonal allows."},
+             {"fovea simplify face.glb -o face-10.glb --ratio 0.1 --importance _IMPORTANCE",
+              "Spend the triangles where the vertex attribute _IMPORTANCE is high."},
+             {"fovea simplify room.glb -o room-web.glb --ratio 0.2 --quantize --compression meshopt",
+              "Simplify and store compactly."}}};
+  }
+
+  void declare(Arguments& arguments) override {
+    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add("Simplification", describe(options_));
+    arguments.add(
+        "Simplification",
+        {{"importance",
+          "How much each vertex matters (1 is neutral, more keeps): a .npy or .csv file, or the name of a "
+          "vertex attribute such as _IMPORTANCE or COLOR_0.",
+          &importance_, "file or name"},
+         {"allow-miss", "Exit with 0 even if the target is not reached.", &allow_miss_, ""}});
+    arguments.add("Output", {describe_output(output_)});
+    arguments.add("Output", describe(write_options_));
+    arguments.add("Limits", describe(read_options_));
+    arguments.add_hint("ratio", "a ratio is a fraction: 0.1 keeps 10 %");
+    arguments.add_hint("error", "an error is a fraction of the diagonal: 0.01 allows 1 %");
+  }
+
+  int run(Session& session) override {
+    check_request();
+    const Model model =
+        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
+    const Snapshot before = snapshot(model, measure_file(input_, model));
+    const Importance importance =
+        session.phase("importance", [&] { return load_importance(importance_, model); });
+    const SimplifyResult result =
+        session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });
+    session.phase("write", [&] { write_model(result.model, output_, write_options_, session.context); });
+    const Snapshot after = snapshot(result.model, measure_file(output_, result.model));
+    return tell(session, before, after, result);
+  }
+
+ private:
+  void check_request() const {
+    if (!options_.triangles && !options_.ratio && !options_.error && !options_.error_abs) {
+      throw Error(ErrorKind::usage, "no target is given", {},
+                  "give --ratio, --triangles, --error or --error-abs, for example --ratio 0.1 to keep 10 %");
+    }
+    check_input(input_);
+    check_output(output_, {input_}, write_options_.force);
+  }
+
+  int tell(Session& session, const Snapshot& before, const Snapshot& after,
+           const SimplifyResult& result) const {
+    const bool reached = reached_target(result, options_);
+    session.report["inputs"] = Json::array({file_json(input_, before.bytes)});
+    session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
+    session.report["before"] = to_json(before);
+    session.report["after"] = to_json(after);
+    session.report["result"] = result_json(result, reached);
+    session.print_summary(fmt::format("{} -> {}\n{}{}time     {}, peak memory {}\n", printable(input_),
+                                      printable(output_), comparison_text(before, after),
+                                      result_text(result, reached), seconds_text(session.seconds()),
+                                      bytes_text(peak_memory_bytes())));
+    if (reached) return 0;
+    if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");
+    return allow_miss_ ? 0 : kTargetMissed;
+  }
+
+  std::string input_;
+  std::string output_;
+  std::string importance_;
+  bool allow_miss_ = false;
+  SimplifyOptions options_;
+  ReadOptions read_options_;
+  WriteOptions write_options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_simplify() { return std::make_unique<Simplify>(); }
+
+}  // namespace fovea::cli

@@ -1,0 +1,73 @@
+#include "simplify_text.h"
+
+#include <fmt/format.h>
+
+#include "report.h"
+#include "text.h"
+
+namespace fovea::cli {
+
+namespace {
+
+std::string stop_text(const SimplifyResult& result, bool reached) {
+  switch (result.stop) {
+    case StopReason::target:
+      return "target of " + plural(result.triangles_target, "triangle", "triangles") + " reached";
+    case StopReason::error: return "error bound reached: the next step would exceed it";
+    case StopReason::cancelled: return "cancelled";
+    case StopReason::stuck: break;
+  }
+  if (reached) return "as simple as it gets: no edge is left that may collapse";
+  return fmt::format("stuck, {} above the target of {}",
+                     plural(result.triangles_after - result.triangles_target, "triangle", "triangles"),
+                     count_text(result.triangles_target));
+}
+
+std::string blocked_text(const BlockCounts& blocked) {
+  if (blocked.edges == 0) return {};
+  TextTable table("lrl");
+  const auto row = [&](const char* name, std::uint64_t count, const char* remedy) {
+    if (count > 0) table.row({name, count_text(count), remedy});
+  };
+  row("locked", blocked.locked, "an end may not move: drop --lock-boundary, or lower the --importance");
+  row("topology", blocked.topology,
+      "would pinch the surface or close a hole: drop --keep-topology if it is set");
+  row("flip", blocked.flip, "would fold the surface or its texture over: a lower --uv-weight may help");
+  row("last", blocked.last,
+      "the last triangles of a piece: drop --keep-topology, or raise --error, to let it vanish");
+  return fmt::format("{} left cannot collapse:\n{}", plural(blocked.edges, "edge", "edges"), table.text(2));
+}
+
+}  // namespace
+
+bool reached_target(const SimplifyResult& result, const SimplifyOptions& options) {
+  const bool count_asked = options.triangles.has_value() || options.ratio.has_value();
+  if (result.stop != StopReason::stuck || !count_asked) return result.stop != StopReason::cancelled;
+  return result.triangles_after <= result.triangles_target;
+}
+
+Json result_json(const SimplifyResult& result, bool reached) {
+  const BlockCounts& b = result.blocked;
+  return {{"triangles_target", result.triangles_target},
+          {"triangles", result.triangles_after},
+          {"reached", reached},
+          {"stop", to_string(result.stop)},
+          {"error_relative", number_json(result.error_rel)},
+          {"error_absolute", number_json(result.error_abs)},
+          {"blocked",
+           {{"edges", b.edges},
+            {"topology", b.topology},
+            {"flip", b.flip},
+            {"locked", b.locked},
+            {"last", b.last}}}};
+}
+
+std::string result_text(const SimplifyResult& result, bool reached) {
+  TextTable table("l");
+  table.row({"error", fmt::format("{} of the diagonal, {} units", number_text(result.error_rel),
+                                  number_text(result.error_abs))});
+  table.row({"stopped", stop_text(result, reached)});
+  return table.text(0) + blocked_text(result.blocked);
+}
+
+}  // namespace fovea::cli

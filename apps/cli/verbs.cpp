@@ -1,0 +1,15 @@
+#include "verb.h"
+
+namespace fovea::cli {
+
+std::unique_ptr<Verb> make_info();
+std::unique_ptr<Verb> make_simplify();
+std::unique_ptr<Verb> make_sample();
+
+std::vector<std::unique_ptr<Verb>> make_verbs() {
+  std::vector<std::unique_ptr<Verb>> verbs;
+  for (const auto make : {make_info, make_simplify, make_sample}) verbs.push_back(make());
+  return verbs;
+}
+
+}  // namespace fovea::cli
