@@ -23,12 +23,13 @@ add_library(fovea_floating_point INTERFACE)
 target_compile_options(fovea_floating_point INTERFACE -ffp-contract=off)
 
 # fovea_module(name DEPENDS modules... LIBRARIES private libraries... HEADER_LIBRARIES libraries...
-#              INTERNAL headers...)
+#              HEADERS public headers...)
 # One folder of src/fovea: all its .cpp files, one static library. DEPENDS are the folders that its
 # headers include; order in src/fovea/CMakeLists.txt forbids cycles. HEADER_LIBRARIES are private and
-# nothing but headers, so that who links Fovea does not need them. INTERNAL headers are not installed.
+# nothing but headers, so that who links Fovea does not need them. HEADERS are installed; without the
+# list all are.
 function(fovea_module name)
-  cmake_parse_arguments(arg "" "" "DEPENDS;LIBRARIES;HEADER_LIBRARIES;INTERNAL" ${ARGN})
+  cmake_parse_arguments(arg "" "" "DEPENDS;LIBRARIES;HEADER_LIBRARIES;HEADERS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   if(NOT sources)
     file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/empty.cpp "")
@@ -48,19 +49,15 @@ function(fovea_module name)
   foreach(library IN LISTS arg_HEADER_LIBRARIES)
     target_link_libraries(fovea_${name} PRIVATE $<BUILD_INTERFACE:${library}>)
   endforeach()
-  fovea_public_headers(${name} "${arg_INTERNAL}")
+  fovea_public_headers(${name} "${arg_HEADERS}")
   set_property(GLOBAL APPEND PROPERTY FOVEA_MODULES fovea_${name})
 endfunction()
 
-# Remembers the headers of a folder that are for users: all but the internal ones.
-function(fovea_public_headers name internal)
-  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
-  foreach(header IN LISTS internal)
-    if(NOT header IN_LIST headers)
-      message(FATAL_ERROR "src/fovea/${name}: INTERNAL names ${header}, which does not exist")
-    endif()
-    list(REMOVE_ITEM headers ${header})
-  endforeach()
+# Remembers the headers of a folder that are for users.
+function(fovea_public_headers name headers)
+  if(NOT headers)
+    file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  endif()
   list(TRANSFORM headers PREPEND fovea/${name}/)
   set_property(GLOBAL APPEND PROPERTY FOVEA_PUBLIC_HEADERS ${headers})
 endfunction()
