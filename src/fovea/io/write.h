@@ -46,7 +46,15 @@ struct OutputFile {
 void write_model(const Model& model, const std::filesystem::path& path, const WriteOptions& options,
                  Context& context);
 
-/// Writes files safely: each to a temporary name beside its place, then all renamed.
+/// Throws what `write_model` would throw about its output alone, so that nobody works for long to hear of it
+/// in the end: Error(usage) for an unknown extension or an existing file without `force`, Error(output) for a
+/// folder that is missing or a place that is taken by something else than a file.
+void check_output(const std::filesystem::path& path, bool force);
+
+/// Writes files safely: each to a temporary name beside its place, then all renamed, `path` itself last.
+/// Folders inside names are made; a side file that is there already with the same content is left alone.
+/// Nothing new is left behind on failure. Throws Error(output), Error(usage) for an existing file without
+/// `force`.
 void write_files(const std::filesystem::path& path, std::span<const OutputFile> files, bool force);
 
 /// Bytes that a model's file holds, by kind.
