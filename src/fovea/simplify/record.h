@@ -19,24 +19,27 @@ enum class StepKind : std::uint8_t {
 /// One step of a simplification. Ids are those of the mesh that was simplified.
 struct CollapseStep {
   StepKind kind = StepKind::collapse;
+  bool moved = false;      ///< collapse: whether `kept` has a new position.
   std::uint32_t mesh = 0;  ///< Index into the meshes that were simplified together.
   VertexId removed, kept;  ///< collapse: `removed` became `kept`; vanish: none.
-  Vec3f position;          ///< collapse: where `kept` is from now on.
+  Vec3f position;          ///< Where `kept` is from now on, if it moved.
   float error_rel = 0;     ///< Largest error of all steps so far, of the scene's diagonal.
   // Ends of this step's runs in the record's lists; they begin where the step before it ends.
-  std::uint32_t faces_end = 0, merges_end = 0, writes_end = 0, floats_end = 0;
+  std::uint32_t faces_end = 0, joins_end = 0, writes_end = 0;
+  std::uint64_t floats_end = 0;
 };
 
 /// Two values of a layer became one: corners with `removed` have `kept` from now on.
-struct ValueMerge {
+struct ValueJoin {
   std::uint32_t layer = 0;
   ValueId removed, kept;
 };
 
-/// A value of a layer was set to new numbers (layer width + morphs, in the record's float list).
+/// A value of a layer was set to new numbers: the layer's width times one plus its morphs, in the
+/// record's float list. With layer kInvalid the position morphs of a vertex: 3 × targets.
 struct ValueWrite {
   std::uint32_t layer = 0;
-  ValueId value;
+  std::uint32_t value = 0;  ///< ValueId, or VertexId for position morphs.
 };
 
 /// The canonical output of simplification: every step in order, with all that is needed to replay it
@@ -44,9 +47,9 @@ struct ValueWrite {
 struct CollapseRecord {
   std::vector<CollapseStep> steps;
   std::vector<FaceId> removed_faces;
-  std::vector<ValueMerge> merges;
+  std::vector<ValueJoin> joins;
   std::vector<ValueWrite> writes;
-  std::vector<float> floats;  ///< New numbers of `writes`, and position morphs of `kept`, in order.
+  std::vector<float> floats;  ///< New numbers of `writes`, in order.
   /// Triangles left over all meshes after the first n steps, [#steps + 1].
   std::vector<std::uint64_t> triangles_after;
 };

@@ -1,0 +1,489 @@
+#include "fovea/simplify/collapse_engine.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "fovea/base/parallel.h"
+#include "fovea/simplify/collapse_queue.h"
+#include "fovea/simplify/legality.h"
+#include "fovea/simplify/value_classes.h"
+#include "fovea/simplify/value_merge.h"
+
+namespace fovea {
+
+namespace {
+
+/// A collapse that breaks topology counts as this much dearer than one that does not.
+constexpr double kTopologyPenalty = 8;
+/// After a refusal an edge is tried again when costs have risen by this factor ...
+constexpr double kRetryFactor = 2;
+/// ... so often, until a change around it gives it a new life.
+constexpr std::uint8_t kMaxRetries = 12;
+/// A legal position may cost this much more than the edge was queued for; else the edge goes back.
+constexpr double kTolerance = 1.1;
+/// Optimal positions further from the edge than this many edge lengths are not believed.
+constexpr double kReach = 2;
+
+/// A place for the merged vertex of an edge, and what it costs.
+struct Candidate {
+  double cost = std::numeric_limits<double>::infinity();
+  Vec3d position;
+};
+
+class Engine {
+ public:
+  Engine(CollapseState& state, std::uint64_t target, double max_error, const SimplifyOptions& options,
+         Context& context)
+      : state_(state),
+        mesh_(state.mesh),
+        target_(target),
+        max_error_(max_error),
+        options_(options),
+        context_(context),
+        edge_count_(static_cast<std::uint32_t>(mesh_.edge_vertex.size())),
+        queue_(edge_count_ + state.components.count()),
+        tries_(edge_count_, 0),
+        legality_(state),
+        merge_(state, options.placement),
+        edge_at_(state.vertices.size()),
+        edge_mark_(state.vertices.size(), 0) {}
+
+  CollapseOutcome run() {
+    fill_queue();
+    outcome_.record.triangles_after.push_back(mesh_.live_faces);
+    outcome_.stop = loop();
+    outcome_.error = error_so_far_;
+    if (outcome_.stop == StopReason::stuck) count_blocked();
+    return std::move(outcome_);
+  }
+
+ private:
+  void fill_queue();
+  StopReason loop();
+  void try_edge(std::uint32_t e);
+  bool is_legal(std::uint32_t a, std::uint32_t b, Vec3d p);
+  void take_or_requeue(std::uint32_t e, const Quadric& q, const Candidate& where);
+  void try_vanish(std::uint32_t component);
+  void put_off(std::uint32_t e);
+  void count_blocked();
+
+  Quadric edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scratch) const;
+  void subtract_channel(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+                        ValueClasses& scratch) const;
+  std::size_t fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const;
+  Candidate best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const;
+
+  void commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error);
+  void merge_edges(std::uint32_t a, std::uint32_t b);
+  void drop_shared_faces(std::uint32_t a, std::uint32_t b);
+  void drop_coincident_faces(std::uint32_t b);
+  void drop_face(std::uint32_t f);
+  void drop_unused_edges();
+  void update_costs(std::uint32_t b);
+  void finish_step(CollapseStep step, double error);
+
+  CollapseState& state_;
+  CollapseMesh& mesh_;
+  const std::uint64_t target_;
+  const double max_error_;
+  const SimplifyOptions& options_;
+  Context& context_;
+  const std::uint32_t edge_count_;
+  CollapseQueue queue_;              // edges, then components
+  std::vector<std::uint8_t> tries_;  // [#E], refusals since the last change around
+  Legality legality_;
+  ValueMerge merge_;
+  ValueClasses classes_;
+  CollapseOutcome outcome_;
+  double error_so_far_ = 0;
+  bool over_error_ = false;
+
+  // Scratch of commit().
+  std::vector<std::uint32_t> edge_at_;    // [#V], edge from b to there
+  std::vector<std::uint32_t> edge_mark_;  // [#V], whether edge_at_ holds in this step
+  std::uint32_t mark_ = 0;
+  std::vector<std::uint32_t> ring_, touched_edges_;
+};
+
+// --- Costs -----------------------------------------------------------------------------------------
+
+void Engine::subtract_channel(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+                              ValueClasses& scratch) const {
+  const int width = channel.fit_width;
+  const std::size_t stride = attribute_stride(width);
+  double sum[attribute_stride(4)];
+  std::vector<double> long_sum;
+  double* total = sum;
+  if (width > 4) {
+    long_sum.resize(stride);
+    total = long_sum.data();
+  }
+  const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
+  if (single_a < Channel::kMany && single_b < Channel::kMany) {
+    const double *qa = channel.value_quadric(single_a), *qb = channel.value_quadric(single_b);
+    for (std::size_t i = 0; i < stride; ++i) total[i] = qa[i] + qb[i];
+    reduce(q, total, width);
+    return;
+  }
+  scratch.find(state_, channel, a, b);
+  for (std::uint32_t root = 0; root < scratch.size(); ++root) {
+    if (scratch[root].root != root) continue;
+    std::fill(total, total + stride, 0.0);
+    for (std::size_t i = root; i < scratch.size(); ++i) {
+      if (scratch[i].root != root) continue;
+      const double* qi = channel.value_quadric(scratch[i].value);
+      for (std::size_t k = 0; k < stride; ++k) total[k] += qi[k];
+    }
+    reduce(q, total, width);
+  }
+}
+
+/// Error of the merged vertex as a function of its position, attributes at their best.
+Quadric Engine::edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scratch) const {
+  Quadric q = state_.vertices[a].quadric + state_.vertices[b].quadric;
+  for (const Channel& channel : state_.channels) {
+    if (channel.kind == ChannelKind::fitted) subtract_channel(q, channel, a, b, scratch);
+  }
+  return q;
+}
+
+/// The ends of the edge, as far as they may move, and its middle: cheapest first. At most three.
+std::size_t Engine::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const {
+  const Vec3d pa = state_.vertices[a].position, pb = state_.vertices[b].position;
+  std::size_t count = 0;
+  const auto add = [&](Vec3d p) {
+    Candidate c{std::max(q.value(p), 0.0), p};
+    std::size_t at = count++;
+    for (; at > 0 && out[at - 1].cost > c.cost; --at) out[at] = out[at - 1];
+    out[at] = c;
+  };
+  if (!state_.locked[a]) add(pb);
+  if (!state_.locked[b]) add(pa);
+  if (count == 2 && options_.placement == Placement::optimal) add((pa + pb) * 0.5);
+  return count;
+}
+
+Candidate Engine::best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const {
+  if (options_.placement == Placement::optimal && !state_.locked[a] && !state_.locked[b]) {
+    const Vec3d pa = state_.vertices[a].position, pb = state_.vertices[b].position;
+    Candidate best;
+    if (q.minimum(best.position) &&
+        length_squared(best.position - (pa + pb) * 0.5) <= kReach * kReach * length_squared(pb - pa)) {
+      best.cost = std::max(q.value_at_minimum(best.position), 0.0);
+      return best;
+    }
+  }
+  std::array<Candidate, 3> all;
+  return fallbacks(a, b, q, all.data()) > 0 ? all[0] : Candidate{};
+}
+
+void Engine::fill_queue() {
+  std::vector<float> cost(edge_count_);
+  parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
+    ValueClasses scratch;
+    for (std::size_t e = begin; e < end; ++e) {
+      const auto [a, b] = mesh_.edge_vertex[e];
+      cost[e] = static_cast<float>(best_place(a, b, edge_quadric(a, b, scratch)).cost);
+    }
+  });
+  for (std::uint32_t e = 0; e < edge_count_; ++e) {
+    if (std::isfinite(cost[e])) queue_.set(e, cost[e]);
+  }
+  if (options_.keep_topology || state_.components.count() < 2) return;
+  for (std::uint32_t i = 0; i < state_.components.count(); ++i)
+    queue_.set(edge_count_ + i, state_.vanish[i].cost);
+}
+
+// --- The loop --------------------------------------------------------------------------------------
+
+StopReason Engine::loop() {
+  const std::uint64_t start = mesh_.live_faces;
+  std::uint64_t turns = 0;
+  while (mesh_.live_faces > target_) {
+    if ((++turns & 0x3FFF) == 0) {
+      const double done =
+          static_cast<double>(start - mesh_.live_faces) / static_cast<double>(start - target_);
+      if (!context_.advance("collapse", done)) return StopReason::cancelled;
+    }
+    const std::uint32_t item = queue_.first();
+    if (item == kInvalid) return over_error_ ? StopReason::error : StopReason::stuck;
+    if (item >= edge_count_) {
+      try_vanish(item - edge_count_);
+    } else {
+      try_edge(item);
+    }
+  }
+  return StopReason::target;
+}
+
+/// Collapses edge e if that is legal at about the cost that it is queued for; else puts it back.
+void Engine::try_edge(std::uint32_t e) {
+  const auto [a, b] = mesh_.edge_vertex[e];
+  if (!legality_.look_at(a, b) && (legality_.topology() == Block::last || options_.keep_topology)) {
+    put_off(e);
+    return;
+  }
+  const Quadric q = edge_quadric(a, b, classes_);
+  std::array<Candidate, 4> places;
+  places[0] = best_place(a, b, q);
+  if (is_legal(a, b, places[0].position)) {
+    take_or_requeue(e, q, places[0]);
+    return;
+  }
+  const std::size_t count = fallbacks(a, b, q, places.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_legal(a, b, places[i].position)) continue;
+    take_or_requeue(e, q, places[i]);
+    return;
+  }
+  put_off(e);
+}
+
+bool Engine::is_legal(std::uint32_t a, std::uint32_t b, Vec3d p) {
+  if (!legality_.shape(a, b, p)) return false;
+  merge_.plan(a, b, p);
+  return legality_.texture(a, b, merge_);
+}
+
+/// A collapse that is legal is carried out if it costs about what it was queued for.
+void Engine::take_or_requeue(std::uint32_t e, const Quadric& q, const Candidate& where) {
+  const double price = where.cost * (legality_.topology() == Block::none ? 1 : kTopologyPenalty);
+  if (price > queue_.cost_floor(e) * kTolerance + std::numeric_limits<float>::min()) {
+    queue_.set(e, price);
+    return;
+  }
+  const double error = std::sqrt(where.cost / std::max(q.weight, 1e-30));
+  if (error > max_error_) {
+    over_error_ = true;
+    queue_.remove(e);
+    return;
+  }
+  commit(mesh_.edge_vertex[e][0], mesh_.edge_vertex[e][1], where, error);
+}
+
+void Engine::put_off(std::uint32_t e) {
+  if (++tries_[e] > kMaxRetries) {
+    queue_.remove(e);
+    return;
+  }
+  const double floor = std::max<double>(queue_.cost_floor(e), 1e-20);
+  queue_.set(e, floor * kRetryFactor);
+}
+
+void Engine::try_vanish(std::uint32_t component) {
+  const std::uint32_t item = edge_count_ + component;
+  queue_.remove(item);
+  const FaceComponents& all = state_.components;
+  ring_.clear();
+  for (std::uint32_t k = all.first[component]; k < all.first[component + 1]; ++k) {
+    if (mesh_.face_alive(all.faces[k])) ring_.push_back(all.faces[k]);
+  }
+  if (ring_.empty() || ring_.size() == mesh_.live_faces) return;
+  for (const std::uint32_t f : ring_) {
+    for (const std::uint32_t v : mesh_.face_vertex[f]) {
+      if (state_.locked[v]) return;
+    }
+  }
+  if (state_.vanish[component].error > max_error_) {
+    over_error_ = true;
+    return;
+  }
+  CollapseStep step;
+  step.kind = StepKind::vanish;
+  step.mesh = state_.slot_of_face(ring_.front());
+  touched_edges_.clear();
+  const std::vector<std::uint32_t> faces = ring_;
+  for (const std::uint32_t f : faces) drop_face(f);
+  drop_unused_edges();
+  finish_step(step, state_.vanish[component].error);
+}
+
+// --- Carrying out a collapse -----------------------------------------------------------------------
+
+void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error) {
+  if (state_.locked[a] || (!state_.locked[b] && where.position == state_.vertices[a].position)) {
+    std::swap(a, b);
+    merge_.plan(a, b, where.position);
+  }
+  const std::uint32_t m = state_.slot_of_vertex(a);
+  const MeshSlot& slot = state_.slots[m];
+  const bool moved = !(where.position == state_.vertices[b].position);
+
+  merge_.apply(a, b, m, outcome_.record);
+  touched_edges_.clear();
+  drop_shared_faces(a, b);
+  merge_edges(a, b);
+  drop_coincident_faces(b);
+  drop_unused_edges();
+  merge_.update_singles(b);
+
+  state_.vertices[b].position = where.position;
+  state_.vertices[b].quadric += state_.vertices[a].quadric;
+  state_.locked[b] |= state_.locked[a];
+  update_costs(b);
+
+  CollapseStep step;
+  step.mesh = m;
+  step.removed = VertexId{a - slot.first_vertex};
+  step.kept = VertexId{b - slot.first_vertex};
+  step.moved = moved;
+  if (moved) step.position = slot.to_local(where.position);
+  finish_step(step, error);
+}
+
+void Engine::drop_face(std::uint32_t f) {
+  for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
+    touched_edges_.push_back(mesh_.corner_edge[c]);
+    mesh_.unlink_corner(c);
+  }
+  mesh_.kill_face(f);
+  outcome_.record.removed_faces.push_back(FaceId{f - state_.slots[state_.slot_of_face(f)].first_face});
+}
+
+void Engine::drop_shared_faces(std::uint32_t a, std::uint32_t b) {
+  ring_.clear();
+  mesh_.for_ring(a, [&](std::uint32_t c) {
+    if (mesh_.vertex(CollapseMesh::next(c)) == b || mesh_.vertex(CollapseMesh::previous(c)) == b)
+      ring_.push_back(c / 3);
+  });
+  for (const std::uint32_t f : ring_) drop_face(f);
+}
+
+/// Gives a's triangles and edges to b; two edges to the same neighbour become one.
+void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
+  ++mark_;
+  const auto note = [&](std::uint32_t w, std::uint32_t e) {
+    edge_mark_[w] = mark_;
+    edge_at_[w] = e;
+  };
+  mesh_.for_ring(b, [&](std::uint32_t c) {
+    note(mesh_.vertex(CollapseMesh::next(c)), mesh_.corner_edge[c]);
+    note(mesh_.vertex(CollapseMesh::previous(c)), mesh_.corner_edge[CollapseMesh::previous(c)]);
+  });
+  const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
+    const std::uint32_t e = mesh_.corner_edge[half_edge];
+    if (edge_mark_[w] == mark_) {
+      if (edge_at_[w] != e) {
+        touched_edges_.push_back(e);
+        mesh_.corner_edge[half_edge] = edge_at_[w];
+      }
+    } else {
+      note(w, e);
+      mesh_.edge_vertex[e] = {b, w};
+    }
+  };
+  ring_.clear();
+  mesh_.for_ring(a, [&](std::uint32_t c) { ring_.push_back(c); });
+  for (const std::uint32_t c : ring_) {
+    take_over(c, mesh_.vertex(CollapseMesh::next(c)));
+    take_over(CollapseMesh::previous(c), mesh_.vertex(CollapseMesh::previous(c)));
+  }
+  for (const std::uint32_t c : ring_) mesh_.face_vertex[c / 3][c % 3] = b;
+  if (ring_.empty()) return;
+  // Splice the two circles.
+  if (mesh_.vertex_corner[b] == kInvalid) {
+    mesh_.vertex_corner[b] = mesh_.vertex_corner[a];
+  } else {
+    std::swap(mesh_.corner_next[mesh_.vertex_corner[a]], mesh_.corner_next[mesh_.vertex_corner[b]]);
+  }
+  mesh_.vertex_corner[a] = kInvalid;
+}
+
+/// After a collapse that pinches the surface two triangles can lie on each other. Back to back they
+/// enclose nothing: both go. Of two that face the same way one goes.
+void Engine::drop_coincident_faces(std::uint32_t b) {
+  if (!legality_.may_coincide()) return;
+  ring_.clear();
+  mesh_.for_ring(b, [&](std::uint32_t c) { ring_.push_back(c); });
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    if (!mesh_.face_alive(ring_[i] / 3)) continue;
+    const std::uint32_t n = mesh_.vertex(CollapseMesh::next(ring_[i])),
+                        p = mesh_.vertex(CollapseMesh::previous(ring_[i]));
+    for (std::size_t j = i + 1; j < ring_.size(); ++j) {
+      if (!mesh_.face_alive(ring_[j] / 3)) continue;
+      const std::uint32_t n2 = mesh_.vertex(CollapseMesh::next(ring_[j])),
+                          p2 = mesh_.vertex(CollapseMesh::previous(ring_[j]));
+      const bool back_to_back = n == p2 && p == n2;
+      if (!back_to_back && !(n == n2 && p == p2)) continue;
+      drop_face(ring_[j] / 3);
+      if (back_to_back) {
+        drop_face(ring_[i] / 3);
+        break;
+      }
+    }
+  }
+}
+
+/// Removes edges that lost their last triangle, or were merged into another.
+void Engine::drop_unused_edges() {
+  for (const std::uint32_t e : touched_edges_) {
+    if (!mesh_.edge_alive(e)) continue;
+    bool used = false;
+    mesh_.for_ring(mesh_.edge_vertex[e][0], [&](std::uint32_t c) {
+      used = used || mesh_.corner_edge[c] == e || mesh_.corner_edge[CollapseMesh::previous(c)] == e;
+    });
+    if (used) continue;
+    mesh_.kill_edge(e);
+    queue_.remove(e);
+  }
+}
+
+/// Costs the edges at b again; those that had been given up get another chance.
+void Engine::update_costs(std::uint32_t b) {
+  ++mark_;
+  const auto update = [&](std::uint32_t e, std::uint32_t w) {
+    if (edge_mark_[w] == mark_) return;
+    edge_mark_[w] = mark_;
+    tries_[e] = 0;
+    const double cost = best_place(b, w, edge_quadric(b, w, classes_)).cost;
+    if (std::isfinite(cost)) {
+      queue_.set(e, cost);
+    } else {
+      queue_.remove(e);
+    }
+  };
+  mesh_.for_ring(b, [&](std::uint32_t c) {
+    update(mesh_.corner_edge[c], mesh_.vertex(CollapseMesh::next(c)));
+    update(mesh_.corner_edge[CollapseMesh::previous(c)], mesh_.vertex(CollapseMesh::previous(c)));
+  });
+}
+
+void Engine::finish_step(CollapseStep step, double error) {
+  error_so_far_ = std::max(error_so_far_, error);
+  CollapseRecord& record = outcome_.record;
+  step.error_rel = static_cast<float>(error_so_far_);
+  step.faces_end = static_cast<std::uint32_t>(record.removed_faces.size());
+  step.joins_end = static_cast<std::uint32_t>(record.joins.size());
+  step.writes_end = static_cast<std::uint32_t>(record.writes.size());
+  step.floats_end = record.floats.size();
+  record.steps.push_back(step);
+  record.triangles_after.push_back(mesh_.live_faces);
+}
+
+void Engine::count_blocked() {
+  for (std::uint32_t e = 0; e < edge_count_; ++e) {
+    if (!mesh_.edge_alive(e)) continue;
+    ++outcome_.blocked.edges;
+    const auto [a, b] = mesh_.edge_vertex[e];
+    if (state_.locked[a] && state_.locked[b]) {
+      ++outcome_.blocked.locked;
+    } else if (!legality_.look_at(a, b)) {
+      ++(legality_.topology() == Block::last ? outcome_.blocked.last : outcome_.blocked.topology);
+    } else {
+      ++outcome_.blocked.flip;
+    }
+  }
+}
+
+}  // namespace
+
+CollapseOutcome collapse(CollapseState& state, std::uint64_t target_triangles, double max_error,
+                         const SimplifyOptions& options, Context& context) {
+  return Engine(state, target_triangles, max_error, options, context).run();
+}
+
+}  // namespace fovea

@@ -1,0 +1,511 @@
+#include "fovea/simplify/collapse_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+
+namespace {
+
+// Lengths are in units of the scene's diagonal.
+
+/// A normal that turns by one radian counts as a surface that moves by this much.
+constexpr double kNormalLength = 0.02;
+/// A colour that changes from black to white counts as a surface that moves by this much.
+constexpr double kColorLength = 0.02;
+/// Attributes that change by more than their range over this length do not change faster for the
+/// engine: beyond tiny triangles their gradients say nothing.
+constexpr double kGradientLength = 0.01;
+/// Pull towards the original vertices, as a fraction of the surface's own weight: keeps optimal
+/// positions defined on flat regions and orders their edges by length.
+constexpr double kRegularization = 1e-4;
+/// Weights of the planes through boundary and seam edges for an option value of 1.
+constexpr double kBoundaryWeight = 4;
+constexpr double kSeamWeight = 1;
+/// Weight of a component that vanishes against a surface of its area that moves by its radius.
+constexpr double kVanishWeight = 1;
+
+class Builder {
+ public:
+  Builder(std::span<const TriMesh* const> meshes, std::span<const double> scales,
+          std::span<const VertexField* const> importance, double diagonal, const SimplifyOptions& options,
+          const Context& context)
+      : meshes_(meshes), importance_(importance), options_(options), context_(context) {
+    place_meshes(scales, diagonal);
+  }
+
+  CollapseState run() {
+    make_connectivity();
+    make_channels();
+    edge_faces_ = count_edge_faces(state_.mesh);
+    make_locks();
+    measure_faces();
+    for (Channel& channel : state_.channels) {
+      find_single_values(channel);
+      if (channel.kind == ChannelKind::fitted) scale_channel(channel);
+    }
+    add_surface_quadrics();
+    for (Channel& channel : state_.channels) {
+      if (channel.kind == ChannelKind::fitted) add_attribute_quadrics(channel);
+    }
+    add_edge_quadrics();
+    price_components();
+    return std::move(state_);
+  }
+
+ private:
+  void place_meshes(std::span<const double> scales, double diagonal);
+  void make_connectivity();
+  void make_channels();
+  void add_layer_channels(std::size_t m);
+  void add_morph_channel(std::size_t m);
+  Channel& channel_for(const AttributeLayer& layer);
+  void append_values(Channel& channel, std::size_t m, const std::vector<const AttributeLayer*>& layers,
+                     const std::vector<std::uint32_t>& layer_indices);
+  void pad_channels();
+  void make_locks();
+  void measure_faces();
+  void find_single_values(Channel& channel) const;
+  void scale_channel(Channel& channel) const;
+  void add_surface_quadrics();
+  void add_attribute_quadrics(Channel& channel);
+  void add_edge_quadrics();
+  bool is_seam(std::uint32_t corner_a, std::uint32_t corner_b) const;
+  void price_components();
+
+  double weight_of(std::uint32_t v) const { return importance_weight_.empty() ? 1.0 : importance_weight_[v]; }
+  ChannelKind kind_of(Semantic semantic) const;
+  double option_weight(const Channel& channel) const;
+  double steepness_limit(const Channel& channel, double scale) const;
+
+  std::span<const TriMesh* const> meshes_;
+  std::span<const VertexField* const> importance_;
+  const SimplifyOptions& options_;
+  const Context& context_;
+  CollapseState state_;
+  std::vector<std::uint8_t> edge_faces_;
+  std::vector<double> importance_weight_;  // [#V], empty if all are 1; 1 where locked
+  std::vector<Vec3d> normal_;              // [#F], unit
+  std::vector<double> area_;               // [#F]
+};
+
+void Builder::place_meshes(std::span<const double> scales, double diagonal) {
+  std::size_t vertices = 0, faces = 0;
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    MeshSlot slot;
+    slot.first_vertex = static_cast<std::uint32_t>(vertices);
+    slot.first_face = static_cast<std::uint32_t>(faces);
+    slot.center = bounds(*meshes_[m]).center();
+    slot.scale = scales[m] / diagonal;
+    state_.slots.push_back(slot);
+    vertices += meshes_[m]->vertex_count();
+    faces += meshes_[m]->face_count();
+  }
+}
+
+void Builder::make_connectivity() {
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const MeshSlot& slot = state_.slots[m];
+    for (const auto& t : meshes_[m]->triangles) {
+      faces.push_back(
+          {slot.first_vertex + t[0].value, slot.first_vertex + t[1].value, slot.first_vertex + t[2].value});
+    }
+    for (const Vec3f& p : meshes_[m]->positions) state_.vertices.push_back({slot.to_engine(p), {}});
+  }
+  state_.mesh = CollapseMesh(std::move(faces), state_.vertices.size());
+}
+
+ChannelKind Builder::kind_of(Semantic semantic) const {
+  switch (semantic) {
+    case Semantic::uv: return options_.uv_weight > 0 ? ChannelKind::fitted : ChannelKind::interpolated;
+    case Semantic::normal:
+      return options_.normal_weight > 0 ? ChannelKind::fitted : ChannelKind::interpolated;
+    case Semantic::color: return options_.color_weight > 0 ? ChannelKind::fitted : ChannelKind::interpolated;
+    case Semantic::tangent: return ChannelKind::interpolated;
+    case Semantic::joints:
+    case Semantic::weights: return ChannelKind::skin;
+    case Semantic::custom: return ChannelKind::nearest;
+  }
+  return ChannelKind::nearest;
+}
+
+double Builder::option_weight(const Channel& channel) const {
+  if (channel.is_position_morph) return 1;
+  switch (channel.semantic) {
+    case Semantic::uv: return options_.uv_weight;
+    case Semantic::normal: return options_.normal_weight;
+    case Semantic::color: return options_.color_weight;
+    default: return 0;
+  }
+}
+
+/// Squared gradient beyond which an attribute's error is damped. For textures that of the mesh's mean
+/// stretch: where texels are crowded a slide is no worse than it looks on the surface.
+double Builder::steepness_limit(const Channel& channel, double scale) const {
+  if (channel.is_position_morph) return 4;
+  if (channel.is_uv()) return 2 * option_weight(channel);
+  return std::pow(2 * scale / kGradientLength, 2);
+}
+
+Channel& Builder::channel_for(const AttributeLayer& layer) {
+  const bool skin = kind_of(layer.semantic) == ChannelKind::skin;
+  for (Channel& c : state_.channels) {
+    if (skin ? c.kind == ChannelKind::skin
+             : !c.is_position_morph && c.semantic == layer.semantic && c.set == layer.set &&
+                   c.name == layer.name) {
+      return c;
+    }
+  }
+  Channel channel;
+  channel.kind = kind_of(layer.semantic);
+  channel.semantic = layer.semantic;
+  channel.set = skin ? 0 : layer.set;
+  channel.name = layer.name;
+  state_.channels.push_back(std::move(channel));
+  return state_.channels.back();
+}
+
+void Builder::make_channels() {
+  // First the shape of each channel (values need their final width), then its contents.
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    int skin_width = 0;
+    for (const AttributeLayer& layer : meshes_[m]->layers) {
+      Channel& channel = channel_for(layer);
+      int width = layer.width * (1 + static_cast<int>(layer.morphs.size()));
+      if (channel.kind == ChannelKind::skin) width = skin_width += layer.width;
+      channel.width = std::max(channel.width, width);
+      if (channel.kind == ChannelKind::fitted) channel.fit_width = std::max(channel.fit_width, layer.width);
+    }
+  }
+  int targets = 0;
+  for (const TriMesh* mesh : meshes_) targets = std::max(targets, static_cast<int>(mesh->target_count()));
+  if (targets > 0) {
+    Channel channel;
+    channel.is_position_morph = true;
+    channel.width = channel.fit_width = 3 * targets;
+    state_.channels.push_back(std::move(channel));
+  }
+  for (Channel& channel : state_.channels) {
+    channel.slices.resize(meshes_.size());
+    channel.first_value.assign(meshes_.size(), 0);
+    channel.scale.assign(meshes_.size(), 1.0);
+    channel.corner_value.reserve(state_.mesh.corner_next.size());
+  }
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    add_layer_channels(m);
+    add_morph_channel(m);
+    pad_channels();
+  }
+}
+
+/// Corner maps of channels that mesh m did not fill say "none" for its corners.
+void Builder::pad_channels() {
+  std::size_t corners = 0;
+  for (const Channel& channel : state_.channels) corners = std::max(corners, channel.corner_value.size());
+  for (Channel& channel : state_.channels) channel.corner_value.resize(corners, kInvalid);
+}
+
+void Builder::add_layer_channels(std::size_t m) {
+  const TriMesh& mesh = *meshes_[m];
+  std::vector<const AttributeLayer*> skin;
+  std::vector<std::uint32_t> skin_indices;
+  for (std::uint32_t l = 0; l < mesh.layers.size(); ++l) {
+    const AttributeLayer& layer = mesh.layers[l];
+    if (kind_of(layer.semantic) == ChannelKind::skin) {
+      skin.push_back(&layer);
+      skin_indices.push_back(l);
+    } else {
+      append_values(channel_for(layer), m, {&layer}, {l});
+    }
+  }
+  if (!skin.empty()) append_values(channel_for(*skin.front()), m, skin, skin_indices);
+}
+
+/// Appends the values and corner map of layers that share one map as one run of the channel.
+void Builder::append_values(Channel& channel, std::size_t m, const std::vector<const AttributeLayer*>& layers,
+                            const std::vector<std::uint32_t>& layer_indices) {
+  const std::size_t first =
+      channel.width > 0 ? channel.values.size() / static_cast<std::size_t>(channel.width) : 0;
+  channel.first_value[m] = static_cast<std::uint32_t>(first);
+  int offset = 0;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const int width = layers[i]->width * (1 + static_cast<int>(layers[i]->morphs.size()));
+    channel.slices[m].push_back({layer_indices[i], offset, width, layers[i]->semantic});
+    offset += width;
+  }
+  const std::size_t count = layers.front()->size();
+  channel.values.resize((first + count) * static_cast<std::size_t>(channel.width), 0.0f);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const AttributeLayer& layer = *layers[i];
+    const auto width = static_cast<std::size_t>(layer.width);
+    for (std::size_t v = 0; v < count; ++v) {
+      float* out = channel.value(static_cast<std::uint32_t>(first + v)) + channel.slices[m][i].offset;
+      out = std::copy_n(layer.values.data() + v * width, width, out);
+      for (const auto& morph : layer.morphs) {
+        if (!morph.empty()) std::copy_n(morph.data() + v * width, width, out);
+        out += width;
+      }
+    }
+  }
+  for (const ValueId value : layers.front()->corner_value) {
+    channel.corner_value.push_back(value.valid() ? static_cast<std::uint32_t>(first) + value.value
+                                                 : kInvalid);
+  }
+}
+
+void Builder::add_morph_channel(std::size_t m) {
+  const TriMesh& mesh = *meshes_[m];
+  if (mesh.target_count() == 0) return;
+  Channel& channel = state_.channels.back();
+  const std::size_t first = channel.values.size() / static_cast<std::size_t>(channel.width);
+  channel.first_value[m] = static_cast<std::uint32_t>(first);
+  channel.slices[m].push_back({kInvalid, 0, 3 * static_cast<int>(mesh.target_count()), Semantic::custom});
+  channel.values.resize((first + mesh.vertex_count()) * static_cast<std::size_t>(channel.width), 0.0f);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    float* out = channel.value(static_cast<std::uint32_t>(first + v));
+    for (const auto& morph : mesh.position_morphs) {
+      *out++ = morph[v].x;
+      *out++ = morph[v].y;
+      *out++ = morph[v].z;
+    }
+  }
+  for (const auto& t : mesh.triangles) {
+    for (const VertexId v : t) channel.corner_value.push_back(static_cast<std::uint32_t>(first) + v.value);
+  }
+}
+
+void Builder::make_locks() {
+  state_.locked.assign(state_.vertices.size(), 0);
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    if (importance_.empty() || importance_[m] == nullptr || importance_[m]->empty()) continue;
+    if (importance_weight_.empty()) importance_weight_.assign(state_.vertices.size(), 1.0);
+    for (std::size_t v = 0; v < importance_[m]->size(); ++v) {
+      const float w = importance_[m]->values()[v];
+      const std::size_t at = state_.slots[m].first_vertex + v;
+      if (std::isinf(w)) {
+        state_.locked[at] = 1;
+      } else {
+        importance_weight_[at] = w;
+      }
+    }
+  }
+  if (!options_.lock_boundary) return;
+  for (std::size_t e = 0; e < edge_faces_.size(); ++e) {
+    if (edge_faces_[e] != 1) continue;
+    for (const std::uint32_t v : state_.mesh.edge_vertex[e]) state_.locked[v] = 1;
+  }
+}
+
+void Builder::measure_faces() {
+  const std::size_t faces = state_.mesh.face_vertex.size();
+  normal_.resize(faces);
+  area_.resize(faces);
+  parallel_for(context_, faces, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto& t = state_.mesh.face_vertex[f];
+      const Vec3d p = state_.vertices[t[0]].position;
+      const Vec3d n = cross(state_.vertices[t[1]].position - p, state_.vertices[t[2]].position - p);
+      const double l = length(n);
+      area_[f] = 0.5 * l;
+      normal_[f] = l > 0 ? n / l : Vec3d{};
+    }
+  });
+}
+
+void Builder::find_single_values(Channel& channel) const {
+  channel.single.assign(state_.vertices.size(), kInvalid);
+  for (std::size_t c = 0; c < channel.corner_value.size(); ++c) {
+    const std::uint32_t value = channel.corner_value[c];
+    if (value == kInvalid) continue;
+    std::uint32_t& single = channel.single[state_.mesh.vertex(static_cast<std::uint32_t>(c))];
+    single = single == kInvalid || single == value ? value : Channel::kMany;
+  }
+}
+
+/// From the layer's units to lengths. Texture coordinates: by the mean stretch of the mesh, so that
+/// one unit of length on the surface is one unit of error, whatever the texture's resolution.
+void Builder::scale_channel(Channel& channel) const {
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const double weight = std::sqrt(option_weight(channel));
+    double length = 1;
+    if (channel.is_position_morph) {
+      length = state_.slots[m].scale;
+    } else if (channel.semantic == Semantic::normal) {
+      length = kNormalLength;
+    } else if (channel.semantic == Semantic::color) {
+      length = kColorLength;
+    } else if (channel.is_uv()) {
+      double area = 0, area_uv = 0;
+      for (std::size_t i = 0; i < meshes_[m]->face_count(); ++i) {
+        const std::size_t f = state_.slots[m].first_face + i;
+        if (channel.corner_value[3 * f] == kInvalid) continue;
+        const auto uv = [&](std::size_t k) {
+          const float* x = channel.value(channel.corner_value[3 * f + k]);
+          return Vec2d{x[0], x[1]};
+        };
+        area += area_[f];
+        area_uv += 0.5 * std::abs(cross(uv(1) - uv(0), uv(2) - uv(0)));
+      }
+      length = area_uv > 0 ? std::sqrt(area / area_uv) : 0;
+    }
+    channel.scale[m] = weight * length;
+  }
+}
+
+void Builder::add_surface_quadrics() {
+  parallel_for(context_, state_.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      CollapseVertex& vertex = state_.vertices[v];
+      const double importance = weight_of(static_cast<std::uint32_t>(v));
+      double weight = 0;
+      state_.mesh.for_ring(static_cast<std::uint32_t>(v), [&](std::uint32_t c) {
+        const double w = area_[c / 3] / 3;
+        vertex.quadric.add_linear(normal_[c / 3], -dot(normal_[c / 3], vertex.position), w * importance);
+        weight += w;
+      });
+      vertex.quadric.add_point(vertex.position, kRegularization * weight * importance);
+      vertex.quadric.weight = weight;
+    }
+  });
+}
+
+void Builder::add_attribute_quadrics(Channel& channel) {
+  const std::size_t stride = attribute_stride(channel.fit_width);
+  channel.quadric.assign(channel.values.size() / static_cast<std::size_t>(channel.width) * stride, 0.0);
+  const int width = channel.fit_width;
+  // Gathered per vertex: a value belongs to one vertex, so vertices do not share anything.
+  parallel_for(context_, state_.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+    std::vector<Vec3d> gradient(static_cast<std::size_t>(width));
+    std::vector<double> origin(static_cast<std::size_t>(width));
+    for (std::size_t v = begin; v < end; ++v) {
+      Quadric& quadric = state_.vertices[v].quadric;
+      const double importance = weight_of(static_cast<std::uint32_t>(v));
+      state_.mesh.for_ring(static_cast<std::uint32_t>(v), [&](std::uint32_t c) {
+        const std::uint32_t f = c / 3;
+        const std::uint32_t own = channel.corner_value[c];
+        if (own == kInvalid || !(area_[f] > 1e-16)) return;
+        const double scale = channel.scale[state_.slot_of_face(f)];
+        const Vec3d p0 = state_.vertices[state_.mesh.face_vertex[f][0]].position;
+        const TriangleGradient along(state_.vertices[state_.mesh.face_vertex[f][1]].position - p0,
+                                     state_.vertices[state_.mesh.face_vertex[f][2]].position - p0, normal_[f],
+                                     2 * area_[f]);
+        const float* s[3];
+        for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * f + k]);
+        double steepness = 0;
+        for (int k = 0; k < width; ++k) {
+          const Vec3d g = along(s[0][k], s[1][k], s[2][k]) * scale;
+          gradient[static_cast<std::size_t>(k)] = g;
+          origin[static_cast<std::size_t>(k)] = scale * s[0][k] - dot(g, p0);
+          steepness += dot(g, g);
+        }
+        const double limit = steepness_limit(channel, scale);
+        const double damping = steepness > limit ? limit / steepness : 1;
+        const double w = area_[f] / 3 * importance * damping;
+        double* value = channel.value_quadric(own);
+        for (int k = 0; k < width; ++k) {
+          const Vec3d g = gradient[static_cast<std::size_t>(k)];
+          const double d = origin[static_cast<std::size_t>(k)];
+          quadric.add_linear(g, d, w);
+          value[4 * k] += w * g.x;
+          value[4 * k + 1] += w * g.y;
+          value[4 * k + 2] += w * g.z;
+          value[4 * k + 3] += w * d;
+        }
+        value[4 * width] += w;
+      });
+    }
+  });
+}
+
+/// Whether two faces on one edge, at corners whose edge it is, differ in texture coordinates or part.
+bool Builder::is_seam(std::uint32_t a, std::uint32_t b) const {
+  // The corners at the two ends: a runs from v to w; b the other way, or the same in a twisted mesh.
+  const CollapseMesh& mesh = state_.mesh;
+  const bool same_direction = mesh.vertex(a) == mesh.vertex(b);
+  const std::uint32_t b_at_v = same_direction ? b : CollapseMesh::next(b);
+  const std::uint32_t b_at_w = same_direction ? CollapseMesh::next(b) : b;
+  for (const Channel& channel : state_.channels) {
+    if (!channel.is_uv()) continue;
+    if (channel.corner_value[a] != channel.corner_value[b_at_v]) return true;
+    if (channel.corner_value[CollapseMesh::next(a)] != channel.corner_value[b_at_w]) return true;
+  }
+  const std::uint32_t m = state_.slot_of_face(a / 3);
+  const auto part = [&](std::uint32_t c) {
+    return meshes_[m]->face_part[c / 3 - state_.slots[m].first_face];
+  };
+  return part(a) != part(b);
+}
+
+/// Planes through boundary and seam edges, upright on their faces, hold the curves in place.
+void Builder::add_edge_quadrics() {
+  const CollapseMesh& mesh = state_.mesh;
+  std::vector<std::uint32_t> first_corner(mesh.edge_vertex.size(), kInvalid);
+  const auto hold = [&](std::uint32_t c, double weight) {
+    const std::uint32_t v = mesh.vertex(c), w = mesh.vertex(CollapseMesh::next(c));
+    const Vec3d edge = state_.vertices[w].position - state_.vertices[v].position;
+    const Vec3d upright = normalized(cross(normal_[c / 3], edge));
+    const double d = -dot(upright, state_.vertices[v].position);
+    for (const std::uint32_t end : {v, w}) {
+      state_.vertices[end].quadric.add_linear(upright, d, 0.5 * weight * weight_of(end) * dot(edge, edge));
+    }
+  };
+  for (std::uint32_t c = 0; c < mesh.corner_edge.size(); ++c) {
+    const std::uint32_t e = mesh.corner_edge[c];
+    if (edge_faces_[e] == 1) {
+      hold(c, kBoundaryWeight * options_.boundary_weight);
+    } else if (edge_faces_[e] == 2) {
+      if (first_corner[e] == kInvalid) {
+        first_corner[e] = c;
+      } else if (is_seam(first_corner[e], c)) {
+        hold(first_corner[e], kSeamWeight * options_.seam_weight);
+        hold(c, kSeamWeight * options_.seam_weight);
+      }
+    }
+  }
+}
+
+/// A component that vanishes is a surface that moves away by its own size.
+void Builder::price_components() {
+  state_.components = find_components(state_.mesh);
+  state_.vanish.resize(state_.components.count());
+  for (std::size_t i = 0; i < state_.vanish.size(); ++i) {
+    Box box;
+    double weight = 0;
+    for (std::uint32_t k = state_.components.first[i]; k < state_.components.first[i + 1]; ++k) {
+      const std::uint32_t f = state_.components.faces[k];
+      for (const std::uint32_t v : state_.mesh.face_vertex[f]) {
+        box.add(state_.vertices[v].position);
+        weight += area_[f] / 3 * weight_of(v);
+      }
+    }
+    const double radius = 0.5 * box.diagonal();
+    state_.vanish[i] = {kVanishWeight * weight * radius * radius, radius};
+  }
+}
+
+}  // namespace
+
+std::uint32_t CollapseState::slot_of_vertex(std::uint32_t v) const {
+  const auto after =
+      std::upper_bound(slots.begin(), slots.end(), v,
+                       [](std::uint32_t x, const MeshSlot& slot) { return x < slot.first_vertex; });
+  return static_cast<std::uint32_t>(after - slots.begin()) - 1;
+}
+
+std::uint32_t CollapseState::slot_of_face(std::uint32_t f) const {
+  const auto after =
+      std::upper_bound(slots.begin(), slots.end(), f,
+                       [](std::uint32_t x, const MeshSlot& slot) { return x < slot.first_face; });
+  return static_cast<std::uint32_t>(after - slots.begin()) - 1;
+}
+
+CollapseState make_collapse_state(std::span<const TriMesh* const> meshes, std::span<const double> scales,
+                                  std::span<const VertexField* const> importance, double diagonal,
+                                  const SimplifyOptions& options, const Context& context) {
+  return Builder(meshes, scales, importance, diagonal, options, context).run();
+}
+
+}  // namespace fovea

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/base/math.h"
+#include "fovea/model/field.h"
+#include "fovea/model/tri_mesh.h"
+#include "fovea/simplify/collapse_mesh.h"
+#include "fovea/simplify/quadric.h"
+#include "fovea/simplify/simplify.h"
+
+namespace fovea {
+
+/// What happens to the values of a channel when vertices merge.
+enum class ChannelKind {
+  fitted,        ///< Set to the best for the new position by the attribute's quadric.
+  interpolated,  ///< Mixed along the edge (tangents, and attributes of weight zero).
+  nearest,       ///< Taken from the nearer end (custom attributes: ids do not mix).
+  skin,          ///< Influences of all JOINTS_n and WEIGHTS_n mixed, the strongest kept.
+};
+
+/// A piece of a layer's values inside a channel's values.
+struct ChannelSlice {
+  std::uint32_t layer = kInvalid;  ///< Index into the mesh's layers; kInvalid: position morphs.
+  int offset = 0;                  ///< Of its first float in a channel value.
+  int width = 0;                   ///< Floats: layer width × (1 + morphs), or 3 × targets.
+  Semantic semantic = Semantic::custom;
+};
+
+/// An attribute of all meshes together: the same values and corner map as the layers, in one array
+/// each, with what the engine needs to know to fit them.
+struct Channel {
+  ChannelKind kind = ChannelKind::fitted;
+  Semantic semantic = Semantic::custom;
+  int set = 0;
+  std::string name;
+  bool is_position_morph = false;
+  int fit_width = 0;  ///< Leading floats of a value that are fitted; the others are interpolated.
+  int width = 0;      ///< Floats per value.
+  std::vector<std::uint32_t> corner_value;        ///< [#F × 3] or kInvalid.
+  std::vector<std::uint32_t> single;              ///< [#V]: the vertex's only value, kMany or kInvalid.
+  std::vector<float> values;                      ///< [#values × width], in the layer's units.
+  std::vector<double> quadric;                    ///< [#values × attribute_stride(fit_width)] if fitted.
+  std::vector<std::vector<ChannelSlice>> slices;  ///< [#meshes]; empty where the mesh lacks it.
+  std::vector<std::uint32_t> first_value;         ///< [#meshes]
+  std::vector<double> scale;  ///< [#meshes], from the layer's units to lengths of the engine.
+
+  static constexpr std::uint32_t kMany = kInvalid - 1;
+  float* value(std::uint32_t id) { return values.data() + id * static_cast<std::size_t>(width); }
+  const float* value(std::uint32_t id) const { return values.data() + id * static_cast<std::size_t>(width); }
+  double* value_quadric(std::uint32_t id) { return quadric.data() + id * attribute_stride(fit_width); }
+  const double* value_quadric(std::uint32_t id) const {
+    return quadric.data() + id * attribute_stride(fit_width);
+  }
+  bool is_uv() const { return semantic == Semantic::uv; }
+};
+
+/// A mesh's place in the arrays of the engine, and its frame: engine = (local − center) · scale.
+struct MeshSlot {
+  std::uint32_t first_vertex = 0, first_face = 0;
+  Vec3d center;
+  double scale = 1;
+
+  Vec3d to_engine(Vec3f p) const { return (Vec3d(p) - center) * scale; }
+  Vec3f to_local(Vec3d p) const { return Vec3f(p / scale + center); }
+};
+
+/// One vertex of the engine.
+struct CollapseVertex {
+  Vec3d position;  ///< In units of the scene's diagonal, around the mesh's centre.
+  Quadric quadric;
+};
+
+/// A whole component as a candidate to go.
+struct VanishCandidate {
+  double cost = 0;
+  double error = 0;  ///< Half the diagonal of its box.
+};
+
+/// All that the engine works on: the meshes of a scene in one set of arrays, lengths in units of the
+/// scene's diagonal so that costs of different meshes compare.
+struct CollapseState {
+  CollapseMesh mesh;
+  std::vector<CollapseVertex> vertices;  // [#V]
+  std::vector<std::uint8_t> locked;      // [#V]
+  std::vector<Channel> channels;
+  std::vector<MeshSlot> slots;  // [#meshes]
+  FaceComponents components;
+  std::vector<VanishCandidate> vanish;  // [#components]
+
+  std::uint32_t slot_of_vertex(std::uint32_t v) const;
+  std::uint32_t slot_of_face(std::uint32_t f) const;
+};
+
+/// Lays out `meshes` (with their scales in scene units and importance fields, which may be empty) and
+/// computes the initial quadrics. `diagonal` is the scene's. O(#F · #layers), parallel.
+CollapseState make_collapse_state(std::span<const TriMesh* const> meshes, std::span<const double> scales,
+                                  std::span<const VertexField* const> importance, double diagonal,
+                                  const SimplifyOptions& options, const Context& context);
+
+}  // namespace fovea

@@ -1,0 +1,132 @@
+#include "fovea/simplify/legality.h"
+
+#include <algorithm>
+
+namespace fovea {
+
+namespace {
+
+/// Cosine of the largest turn of a triangle in one collapse.
+constexpr double kMaxTurnCosine = 0.25;
+/// A triangle whose height is below this fraction of its longest edge is a sliver.
+constexpr double kSliver = 1e-3;
+
+double longest_squared(Vec3d a, Vec3d b, Vec3d c) {
+  return std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
+}
+
+}  // namespace
+
+bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
+  const CollapseMesh& mesh = state_.mesh;
+  ++look_;
+  topology_ = Block::none;
+  std::size_t surviving = 0, common = 0, across = 0;
+  bool boundary_a = false, boundary_b = false;
+
+  const auto visit = [&](std::vector<std::uint32_t>& mark, std::uint32_t w) {
+    if (mark[w] == look_) {
+      if (count_[w] < 3) ++count_[w];
+      return false;
+    }
+    mark[w] = look_;
+    count_[w] = 1;
+    return true;
+  };
+  mesh.for_ring(a, [&](std::uint32_t c) {
+    visit(mark_a_, mesh.vertex(CollapseMesh::next(c)));
+    visit(mark_a_, mesh.vertex(CollapseMesh::previous(c)));
+  });
+  const std::uint8_t faces_on_edge = count_[b];
+  far_edges_.clear();
+  mesh.for_ring(a, [&](std::uint32_t c) {
+    const std::uint32_t n = mesh.vertex(CollapseMesh::next(c)), p = mesh.vertex(CollapseMesh::previous(c));
+    boundary_a = boundary_a || count_[n] == 1 || count_[p] == 1;
+    if (n == b || p == b) return;
+    ++surviving;
+    far_edges_.emplace_back(n, p);
+  });
+  mesh.for_ring(b, [&](std::uint32_t c) {
+    for (const std::uint32_t w :
+         {mesh.vertex(CollapseMesh::next(c)), mesh.vertex(CollapseMesh::previous(c))}) {
+      if (visit(mark_b_, w) && mark_a_[w] == look_ && w != a) ++common;
+    }
+  });
+  // Distinct vertices across the edge: marked once more by taking them out of mark_b_.
+  bool coincide = false;
+  mesh.for_ring(b, [&](std::uint32_t c) {
+    const std::uint32_t n = mesh.vertex(CollapseMesh::next(c)), p = mesh.vertex(CollapseMesh::previous(c));
+    boundary_b = boundary_b || count_[n] == 1 || count_[p] == 1;
+    if (n != a && p != a) {
+      ++surviving;
+      if (mark_a_[n] == look_ && mark_a_[p] == look_) {
+        for (const auto& [x, y] : far_edges_) coincide = coincide || (x == n && y == p) || (x == p && y == n);
+      }
+      return;
+    }
+    const std::uint32_t opposite = n == a ? p : n;
+    if (mark_b_[opposite] == look_) {
+      mark_b_[opposite] = 0;
+      ++across;
+    }
+  });
+  if (surviving == 0) {
+    topology_ = Block::last;
+  } else if (common != across || coincide || (faces_on_edge >= 2 && boundary_a && boundary_b)) {
+    topology_ = Block::topology;
+  }
+  return topology_ == Block::none;
+}
+
+bool Legality::keeps_shape(std::uint32_t c, std::uint32_t other, Vec3d p) const {
+  const CollapseMesh& mesh = state_.mesh;
+  const std::uint32_t v1 = mesh.vertex(CollapseMesh::next(c)), v2 = mesh.vertex(CollapseMesh::previous(c));
+  if (v1 == other || v2 == other) return true;
+  const Vec3d p0 = state_.vertices[mesh.vertex(c)].position;
+  const Vec3d p1 = state_.vertices[v1].position, p2 = state_.vertices[v2].position;
+  const Vec3d before = cross(p1 - p0, p2 - p0), after = cross(p1 - p, p2 - p);
+  const double before2 = length_squared(before), after2 = length_squared(after);
+  const double size_before = longest_squared(p0, p1, p2), size_after = longest_squared(p, p1, p2);
+  // Height / longest edge = double area / longest edge².
+  const bool sliver_before = before2 < kSliver * kSliver * size_before * size_before;
+  const bool sliver_after = after2 < kSliver * kSliver * size_after * size_after;
+  if (sliver_before) return true;
+  if (sliver_after) return false;
+  const double cosine = dot(before, after);
+  return cosine > 0 && cosine * cosine > kMaxTurnCosine * kMaxTurnCosine * before2 * after2;
+}
+
+bool Legality::shape(std::uint32_t a, std::uint32_t b, Vec3d p) const {
+  bool ok = true;
+  state_.mesh.for_ring(a, [&](std::uint32_t c) { ok = ok && keeps_shape(c, b, p); });
+  state_.mesh.for_ring(b, [&](std::uint32_t c) { ok = ok && keeps_shape(c, a, p); });
+  return ok;
+}
+
+bool Legality::keeps_texture(std::uint32_t c, std::uint32_t other, std::size_t channel_index,
+                             const ValueMerge& merge) const {
+  const CollapseMesh& mesh = state_.mesh;
+  const std::uint32_t n = CollapseMesh::next(c), p = CollapseMesh::previous(c);
+  if (mesh.vertex(n) == other || mesh.vertex(p) == other) return true;
+  const Channel& channel = state_.channels[channel_index];
+  const std::uint32_t own = channel.corner_value[c];
+  if (own == kInvalid) return true;
+  const auto uv = [](const float* x) { return Vec2d{x[0], x[1]}; };
+  const Vec2d q1 = uv(channel.value(channel.corner_value[n])),
+              q2 = uv(channel.value(channel.corner_value[p]));
+  const Vec2d q0 = uv(channel.value(own)), q = uv(merge.planned(channel_index, own));
+  const double before = cross(q1 - q0, q2 - q0), after = cross(q1 - q, q2 - q);
+  return before == 0 || (before > 0) == (after > 0);
+}
+
+bool Legality::texture(std::uint32_t a, std::uint32_t b, const ValueMerge& merge) const {
+  bool ok = true;
+  for (std::size_t i = 0; i < state_.channels.size(); ++i) {
+    if (!state_.channels[i].is_uv()) continue;
+    state_.mesh.for_ring(a, [&](std::uint32_t c) { ok = ok && keeps_texture(c, b, i, merge); });
+    state_.mesh.for_ring(b, [&](std::uint32_t c) { ok = ok && keeps_texture(c, a, i, merge); });
+  }
+  return ok;
+}
+
+}  // namespace fovea

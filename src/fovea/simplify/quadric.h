@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cmath>
+
+#include "fovea/base/math.h"
+
+namespace fovea {
+
+/// A quadratic function of a point: p ↦ pᵀ A p + 2 b·p + c, with A symmetric (Garland & Heckbert
+/// 1997). Sums of weighted squared distances to planes and points have this form. `weight` is the
+/// area behind it, so that sqrt(value / weight) is a root-mean-square distance.
+struct Quadric {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  double bx = 0, by = 0, bz = 0;
+  double c = 0;
+  double weight = 0;
+
+  Quadric& operator+=(const Quadric& q) {
+    xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
+    bx += q.bx, by += q.by, bz += q.bz;
+    c += q.c;
+    weight += q.weight;
+    return *this;
+  }
+  friend Quadric operator+(Quadric a, const Quadric& b) { return a += b; }
+
+  /// Adds w · (g·p + d)²: for unit g the squared distance to a plane, for a gradient g the squared
+  /// deviation of an attribute from zero.
+  void add_linear(Vec3d g, double d, double w) {
+    xx += w * g.x * g.x, xy += w * g.x * g.y, xz += w * g.x * g.z;
+    yy += w * g.y * g.y, yz += w * g.y * g.z, zz += w * g.z * g.z;
+    bx += w * d * g.x, by += w * d * g.y, bz += w * d * g.z;
+    c += w * d * d;
+  }
+  /// Adds w · ‖p − q‖².
+  void add_point(Vec3d q, double w) {
+    xx += w, yy += w, zz += w;
+    bx -= w * q.x, by -= w * q.y, bz -= w * q.z;
+    c += w * dot(q, q);
+  }
+  double value(Vec3d p) const {
+    return p.x * (xx * p.x + 2 * (xy * p.y + xz * p.z + bx)) + p.y * (yy * p.y + 2 * (yz * p.z + by)) +
+           p.z * (zz * p.z + 2 * bz) + c;
+  }
+
+  /// The value at the point that `minimum` found, for less: there A p = -b.
+  double value_at_minimum(Vec3d p) const { return bx * p.x + by * p.y + bz * p.z + c; }
+
+  /// The point of least value. Returns false if A is singular to working precision (`limit` bounds
+  /// the determinant against the cube of A's trace).
+  bool minimum(Vec3d& p, double limit = 1e-13) const {
+    const double m00 = yy * zz - yz * yz, m01 = xz * yz - xy * zz, m02 = xy * yz - xz * yy;
+    const double det = xx * m00 + xy * m01 + xz * m02;
+    const double trace = xx + yy + zz;
+    if (!(det > limit * trace * trace * trace)) return false;
+    const double m11 = xx * zz - xz * xz, m12 = xy * xz - xx * yz, m22 = xx * yy - xy * xy;
+    const double s = -1 / det;
+    p = {s * (m00 * bx + m01 * by + m02 * bz), s * (m01 * bx + m11 * by + m12 * bz),
+         s * (m02 * bx + m12 * by + m22 * bz)};
+    return true;
+  }
+};
+
+/// The part of an attribute's quadric that depends on its value (Hoppe 1999, eq. 8–12). With s the
+/// value of one component at the vertex, the summed squared deviations from the linear functions
+/// g·p + d of the triangles around are
+///   Σ w (g·p + d − s)² = Σ w (g·p + d)² − 2 s (G·p + D) + W s²,   G = Σ w g,  D = Σ w d,  W = Σ w.
+/// The first term goes into the vertex's Quadric. Minimised over s (s = (G·p + D) / W) the rest is
+/// −(G·p + D)² / W.
+///
+/// In memory: `width` times (G, D), then W; see `attribute_stride`.
+constexpr std::size_t attribute_stride(int width) { return 4 * static_cast<std::size_t>(width) + 1; }
+
+/// Subtracts Σ_k (G_k·p + D_k)² / W from q: the value of each component is the best for p.
+inline void reduce(Quadric& q, const double* attribute, int width) {
+  const double weight = attribute[4 * width];
+  if (!(weight > 0)) return;
+  const double inverse = 1 / weight;
+  for (int k = 0; k < width; ++k) {
+    const double* g = attribute + 4 * k;
+    q.add_linear({g[0], g[1], g[2]}, g[3], -inverse);
+  }
+}
+
+/// The best value of component k at p.
+inline double fitted_value(const double* attribute, int width, int k, Vec3d p) {
+  const double* g = attribute + 4 * k;
+  return (g[0] * p.x + g[1] * p.y + g[2] * p.z + g[3]) / attribute[4 * width];
+}
+
+/// Linear function over a triangle that takes given values at its corners: the gradient of one
+/// component is value differences times these two vectors.
+struct TriangleGradient {
+  Vec3d u, v;  // dual basis of the edges p1 - p0 and p2 - p0 in the triangle's plane
+  TriangleGradient(Vec3d e1, Vec3d e2, Vec3d unit_normal, double double_area) {
+    u = cross(e2, unit_normal) / double_area;
+    v = cross(unit_normal, e1) / double_area;
+  }
+  Vec3d operator()(double s0, double s1, double s2) const { return u * (s1 - s0) + v * (s2 - s0); }
+};
+
+}  // namespace fovea

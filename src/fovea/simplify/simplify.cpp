@@ -1,0 +1,239 @@
+#include "fovea/simplify/simplify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "fovea/base/error.h"
+#include "fovea/simplify/collapse_engine.h"
+
+namespace fovea {
+
+namespace {
+
+void check_request(const Model& model, SimplifyOptions options, const Importance& importance) {
+  check(describe(options));
+  if (!options.triangles && !options.ratio && !options.error && !options.error_abs) {
+    throw Error(ErrorKind::usage, "no target is given", "simplify",
+                "give --ratio, --triangles, --error or --error-abs; for example --ratio 0.1");
+  }
+  if (importance.empty()) return;
+  if (importance.size() != model.meshes.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("importance has {} fields for {} meshes", importance.size(), model.meshes.size()),
+                "importance");
+  }
+  for (std::size_t m = 0; m < importance.size(); ++m) {
+    const VertexField& field = importance[m];
+    const std::size_t expected = model.meshes[m].surface.vertex_count();
+    if (!field.empty() && field.size() != expected) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("mesh {} has {} vertices, its importance {}", m, expected, field.size()),
+                  "importance");
+    }
+    for (const float w : field.values()) {
+      if (!(w >= 0)) {
+        throw Error(ErrorKind::usage, fmt::format("mesh {} has the value {}", m, w), "importance",
+                    "values are 0 or more; infinity locks a vertex");
+      }
+    }
+  }
+}
+
+/// The largest scale at which each mesh is shown; 1 if it is not.
+std::vector<double> mesh_scales(const Model& model) {
+  std::vector<double> scales;
+  for (const auto& instances : mesh_instances(model)) {
+    double largest = 0;
+    for (const Mat4& m : instances) largest = std::max(largest, std::cbrt(std::abs(determinant3(m))));
+    scales.push_back(largest > 0 ? largest : 1.0);
+  }
+  return scales;
+}
+
+/// Diagonal of what is shown; of the meshes themselves if no node shows any.
+double scene_diagonal(const Model& model) {
+  Box box = bounds(model);
+  if (box.empty()) {
+    for (const Mesh& mesh : model.meshes) box.add(bounds(mesh.surface));
+  }
+  return box.diagonal() > 0 ? box.diagonal() : 1.0;
+}
+
+/// Meshes that go through the engine together, with all that it needs of each.
+struct Batch {
+  std::vector<std::size_t> mesh_index;
+  std::vector<const TriMesh*> meshes;
+  std::vector<double> scales;
+  std::vector<const VertexField*> importance;
+  std::uint64_t triangles = 0;
+
+  void add(const Model& model, std::size_t m, double scale, const Importance& fields) {
+    mesh_index.push_back(m);
+    meshes.push_back(&model.meshes[m].surface);
+    scales.push_back(scale);
+    importance.push_back(fields.empty() ? nullptr : &fields[m]);
+    triangles += model.meshes[m].surface.face_count();
+  }
+};
+
+/// One batch for the scene, or one per mesh.
+std::vector<Batch> make_batches(const Model& model, const std::vector<double>& scales,
+                                const Importance& importance, bool per_mesh) {
+  std::vector<Batch> batches;
+  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+    if (model.meshes[m].surface.face_count() == 0) continue;
+    if (batches.empty() || per_mesh) batches.emplace_back();
+    batches.back().add(model, m, scales[m], importance);
+  }
+  return batches;
+}
+
+/// Triangles to keep of `batch` when the whole model has `total`; none if there is no count target.
+std::optional<std::uint64_t> triangle_target(const SimplifyOptions& options, std::uint64_t batch,
+                                             std::uint64_t total) {
+  std::optional<std::uint64_t> target;
+  // Together the first reached stops: the larger count.
+  const auto raise = [&](double share) {
+    const auto count = static_cast<std::uint64_t>(std::floor(share * static_cast<double>(batch) + 1e-9));
+    target = std::max(target.value_or(0), count);
+  };
+  if (options.ratio) raise(*options.ratio);
+  if (options.triangles)
+    raise(std::min(1.0, static_cast<double>(*options.triangles) / static_cast<double>(total)));
+  return target;
+}
+
+/// In units of the scene's diagonal; infinity without an error target.
+double error_bound(const SimplifyOptions& options, double diagonal) {
+  double bound = std::numeric_limits<double>::infinity();
+  if (options.error) bound = std::min(bound, *options.error);
+  if (options.error_abs) bound = std::min(bound, *options.error_abs / diagonal);
+  return bound;
+}
+
+/// A stop that says more than another wins when several meshes were simplified apart.
+void combine(SimplifyResult& result, const CollapseOutcome& outcome) {
+  const auto rank = [](StopReason r) {
+    return r == StopReason::cancelled ? 3 : r == StopReason::stuck ? 2 : r == StopReason::error ? 1 : 0;
+  };
+  if (rank(outcome.stop) > rank(result.stop)) result.stop = outcome.stop;
+  result.error_rel = std::max(result.error_rel, outcome.error);
+  result.blocked.edges += outcome.blocked.edges;
+  result.blocked.topology += outcome.blocked.topology;
+  result.blocked.flip += outcome.blocked.flip;
+  result.blocked.locked += outcome.blocked.locked;
+  result.blocked.last += outcome.blocked.last;
+}
+
+/// Appends the steps of one batch to those of the model; `mesh_index` numbers the batch's meshes.
+void append(CollapseRecord& all, CollapseRecord&& batch, const std::vector<std::size_t>& mesh_index) {
+  const auto faces = static_cast<std::uint32_t>(all.removed_faces.size());
+  const auto joins = static_cast<std::uint32_t>(all.joins.size());
+  const auto writes = static_cast<std::uint32_t>(all.writes.size());
+  const std::uint64_t floats = all.floats.size();
+  const std::uint64_t before = all.triangles_after.back(), batch_before = batch.triangles_after.front();
+  for (std::size_t i = 0; i < batch.steps.size(); ++i) {
+    CollapseStep step = batch.steps[i];
+    step.mesh = static_cast<std::uint32_t>(mesh_index[step.mesh]);
+    step.faces_end += faces;
+    step.joins_end += joins;
+    step.writes_end += writes;
+    step.floats_end += floats;
+    all.steps.push_back(step);
+    all.triangles_after.push_back(before - (batch_before - batch.triangles_after[i + 1]));
+  }
+  const auto take = [](auto& to, auto&& from) {
+    if (to.empty()) {
+      to = std::move(from);
+    } else {
+      to.insert(to.end(), from.begin(), from.end());
+    }
+  };
+  take(all.removed_faces, std::move(batch.removed_faces));
+  take(all.joins, std::move(batch.joins));
+  take(all.writes, std::move(batch.writes));
+  take(all.floats, std::move(batch.floats));
+}
+
+}  // namespace
+
+const char* to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::target: return "target";
+    case StopReason::error: return "error";
+    case StopReason::stuck: return "stuck";
+    case StopReason::cancelled: return "cancelled";
+  }
+  return "target";
+}
+
+OptionList describe(SimplifyOptions& o) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  return {
+      {"ratio", "Fraction of the triangles to keep: 0.1 keeps 10 %.", &o.ratio, "", 0, 1},
+      {"triangles", "Triangles to keep, each mesh counted once however often it is shown.", &o.triangles,
+       "triangles", 0, infinity},
+      {"error", "Largest error, as a fraction of the scene's bounding diagonal.", &o.error, "of the diagonal",
+       0, infinity},
+      {"error-abs", "Largest error in scene units.", &o.error_abs, "scene units", 0, infinity},
+      {"per-mesh",
+       "Simplify every mesh to the same ratio instead of spending triangles where they matter in the scene.",
+       &o.per_mesh, "", 0, 1},
+      {"placement",
+       "Where a merged vertex goes: at the least error, or at an end of its edge so that all vertices are "
+       "original.",
+       choice(o.placement, {"optimal", "half-edge"}), ""},
+      {"uv-weight",
+       "How much sliding textures count against moving surfaces; 1: the same length counts the same.",
+       &o.uv_weight, "", 0, 1e6},
+      {"normal-weight", "How much turning normals count; higher keeps shading.", &o.normal_weight, "", 0,
+       1e6},
+      {"color-weight", "How much changing vertex colours count.", &o.color_weight, "", 0, 1e6},
+      {"boundary-weight", "How firmly open boundaries are held in place.", &o.boundary_weight, "", 0, 1e6},
+      {"seam-weight", "How firmly texture seams and material borders are held in place.", &o.seam_weight, "",
+       0, 1e6},
+      {"lock-boundary", "Never move or remove vertices on open boundaries.", &o.lock_boundary, ""},
+      {"keep-topology",
+       "Never close holes or handles and never drop a component; targets may become unreachable.",
+       &o.keep_topology, ""},
+  };
+}
+
+SimplifyResult simplify(const Model& model, const SimplifyOptions& options, const Importance& importance,
+                        Context& context) {
+  const auto start = std::chrono::steady_clock::now();
+  check_request(model, options, importance);
+  const double diagonal = scene_diagonal(model);
+  const std::vector<Batch> batches = make_batches(model, mesh_scales(model), importance, options.per_mesh);
+
+  SimplifyResult result;
+  for (const Batch& batch : batches) result.triangles_before += batch.triangles;
+  result.record.triangles_after.push_back(result.triangles_before);
+  result.model = model;
+  for (const Batch& batch : batches) {
+    const auto target = triangle_target(options, batch.triangles, result.triangles_before);
+    result.triangles_target += target.value_or(0);
+    CollapseState state =
+        make_collapse_state(batch.meshes, batch.scales, batch.importance, diagonal, options, context);
+    CollapseOutcome outcome =
+        collapse(state, target.value_or(0), error_bound(options, diagonal), options, context);
+    state = {};
+    combine(result, outcome);
+    std::vector<TriMesh> meshes = replay(batch.meshes, outcome.record, outcome.record.steps.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+      result.model.meshes[batch.mesh_index[i]].surface = std::move(meshes[i]);
+    append(result.record, std::move(outcome.record), batch.mesh_index);
+  }
+  result.triangles_after = result.record.triangles_after.back();
+  result.error_abs = result.error_rel * diagonal;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace fovea

@@ -1,0 +1,54 @@
+#include "fovea/simplify/value_classes.h"
+
+#include <algorithm>
+
+namespace fovea {
+
+std::size_t ValueClasses::index_of(std::uint32_t value) const {
+  std::size_t i = 0;
+  while (entries_[i].value != value) ++i;
+  return i;
+}
+
+std::size_t ValueClasses::add(std::uint32_t value, bool at_b) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].value == value) return i;
+  }
+  entries_.push_back({value, static_cast<std::uint32_t>(entries_.size()), at_b});
+  return entries_.size() - 1;
+}
+
+void ValueClasses::join(std::size_t i, std::size_t j) {
+  const std::uint32_t keep = std::min(entries_[i].root, entries_[j].root);
+  const std::uint32_t drop = std::max(entries_[i].root, entries_[j].root);
+  for (Entry& e : entries_) {
+    if (e.root == drop) e.root = keep;
+  }
+}
+
+void ValueClasses::find(const CollapseState& state, const Channel& channel, std::uint32_t a,
+                        std::uint32_t b) {
+  entries_.clear();
+  const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
+  if (single_a < Channel::kMany && single_b < Channel::kMany) {
+    entries_.push_back({single_a, 0, false});
+    entries_.push_back({single_b, 0, true});
+    return;
+  }
+  const CollapseMesh& mesh = state.mesh;
+  mesh.for_ring(a, [&](std::uint32_t c) {
+    if (channel.corner_value[c] != kInvalid) add(channel.corner_value[c], false);
+  });
+  mesh.for_ring(b, [&](std::uint32_t c) {
+    if (channel.corner_value[c] != kInvalid) add(channel.corner_value[c], true);
+  });
+  mesh.for_ring(a, [&](std::uint32_t c) {
+    if (channel.corner_value[c] == kInvalid) return;
+    for (const std::uint32_t other : {CollapseMesh::next(c), CollapseMesh::previous(c)}) {
+      if (mesh.vertex(other) != b) continue;
+      join(index_of(channel.corner_value[c]), index_of(channel.corner_value[other]));
+    }
+  });
+}
+
+}  // namespace fovea

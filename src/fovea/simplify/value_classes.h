@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "fovea/simplify/collapse_state.h"
+
+namespace fovea {
+
+/// Which values of one channel become one when the edge a–b collapses.
+///
+/// Every triangle on the edge vanishes, and with it the difference between its value at a and its
+/// value at b: the two join. On a plain edge that leaves one value; on a seam edge one per side; where
+/// a seam ends, the sides join at its end. Values of a or b that no such triangle uses live on.
+class ValueClasses {
+ public:
+  struct Entry {
+    std::uint32_t value = kInvalid;
+    std::uint32_t root = 0;  ///< Index of the class's first entry.
+    bool at_b = false;
+  };
+
+  /// Finds the classes of `channel` for the edge a–b.
+  void find(const CollapseState& state, const Channel& channel, std::uint32_t a, std::uint32_t b);
+
+  std::size_t size() const { return entries_.size(); }
+  const Entry& operator[](std::size_t i) const { return entries_[i]; }
+  /// Index of the entry of a value that belongs to a or b.
+  std::size_t index_of(std::uint32_t value) const;
+
+ private:
+  std::size_t add(std::uint32_t value, bool at_b);
+  void join(std::size_t i, std::size_t j);
+
+  std::vector<Entry> entries_;  // a's values first, then b's
+};
+
+}  // namespace fovea

@@ -1,0 +1,195 @@
+#include "fovea/simplify/value_merge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fovea {
+
+void ValueMerge::plan(std::uint32_t a, std::uint32_t b, Vec3d p) {
+  const Vec3d pa = state_.vertices[a].position, edge = state_.vertices[b].position - pa;
+  const double l2 = length_squared(edge);
+  along_ = l2 > 0 ? static_cast<float>(std::clamp(dot(p - pa, edge) / l2, 0.0, 1.0)) : 0.5f;
+  position_ = p;
+  slot_ = state_.slot_of_vertex(a);
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    const Channel& channel = state_.channels[i];
+    Plan& plan = plans_[i];
+    plan.classes.find(state_, channel, a, b);
+    plan.values.resize(plan.classes.size() * static_cast<std::size_t>(channel.width));
+    for (std::uint32_t root = 0; root < plan.classes.size(); ++root) {
+      if (plan.classes[root].root == root) plan_class(channel, plan, root);
+    }
+  }
+}
+
+void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t root) {
+  const float *at_a = nullptr, *at_b = nullptr;
+  for (std::size_t i = root; i < plan.classes.size(); ++i) {
+    const auto& entry = plan.classes[i];
+    if (entry.root != root) continue;
+    (entry.at_b ? at_b : at_a) = channel.value(entry.value);
+  }
+  if (at_a == nullptr) at_a = at_b;
+  if (at_b == nullptr) at_b = at_a;
+  const auto width = static_cast<std::size_t>(channel.width);
+  float* out = plan.values.data() + root * width;
+
+  if (channel.kind == ChannelKind::nearest || placement_ == Placement::half_edge) {
+    std::copy_n(along_ < 0.5f ? at_a : at_b, width, out);
+    return;
+  }
+  if (channel.kind == ChannelKind::skin) {
+    mix_skin(channel, at_a, at_b, out);
+    return;
+  }
+  for (std::size_t k = 0; k < width; ++k) out[k] = at_a[k] + (at_b[k] - at_a[k]) * along_;
+  if (channel.semantic == Semantic::tangent) out[3] = (along_ < 0.5f ? at_a : at_b)[3];
+  if (channel.kind == ChannelKind::fitted) fit(channel, plan, root, out);
+}
+
+void ValueMerge::fit(const Channel& channel, const Plan& plan, std::uint32_t root, float* out) {
+  const double scale = channel.scale[slot_];
+  const std::size_t stride = attribute_stride(channel.fit_width);
+  sum_.assign(stride, 0.0);
+  for (std::size_t i = root; i < plan.classes.size(); ++i) {
+    if (plan.classes[i].root != root) continue;
+    const double* q = channel.value_quadric(plan.classes[i].value);
+    for (std::size_t k = 0; k < stride; ++k) sum_[k] += q[k];
+  }
+  if (!(sum_[stride - 1] > 0) || !(scale > 0)) return;
+  double fitted[3] = {};
+  for (int k = 0; k < channel.fit_width; ++k) {
+    const double value = fitted_value(sum_.data(), channel.fit_width, k, position_) / scale;
+    if (channel.semantic == Semantic::normal) {
+      fitted[k] = value;
+    } else if (channel.semantic == Semantic::color) {
+      out[k] = static_cast<float>(std::clamp(value, 0.0, 1.0));
+    } else {
+      out[k] = static_cast<float>(value);
+    }
+  }
+  if (channel.semantic != Semantic::normal) return;
+  const Vec3d n{fitted[0], fitted[1], fitted[2]};
+  if (length(n) < 1e-3) return;  // opposing normals cancel: the mixed one is as good as any
+  const Vec3d unit = normalized(n);
+  out[0] = static_cast<float>(unit.x);
+  out[1] = static_cast<float>(unit.y);
+  out[2] = static_cast<float>(unit.z);
+}
+
+/// Mixes two influence lists and keeps as many of the strongest as there is room for.
+void ValueMerge::mix_skin(const Channel& channel, const float* at_a, const float* at_b, float* out) const {
+  // Joints and weights come in layers of their own, in the same order of sets.
+  std::vector<std::pair<float, float>> mixed;  // joint, weight
+  std::vector<std::pair<int, int>> places;     // offsets of joint and weight
+  std::vector<int> joints, weights;
+  const auto& slices = channel.slices[slot_];
+  for (const ChannelSlice& slice : slices) {
+    auto& list = slice.semantic == Semantic::joints ? joints : weights;
+    for (int i = 0; i < slice.width; ++i) list.push_back(slice.offset + i);
+  }
+  for (std::size_t i = 0; i < std::min(joints.size(), weights.size()); ++i)
+    places.emplace_back(joints[i], weights[i]);
+  const auto add = [&](const float* from, float share) {
+    for (const auto& [j, w] : places) {
+      if (from[w] * share <= 0) continue;
+      const auto known =
+          std::find_if(mixed.begin(), mixed.end(), [&, j = j](const auto& m) { return m.first == from[j]; });
+      if (known == mixed.end()) {
+        mixed.emplace_back(from[j], from[w] * share);
+      } else {
+        known->second += from[w] * share;
+      }
+    }
+  };
+  add(at_a, 1 - along_);
+  add(at_b, along_);
+  std::stable_sort(mixed.begin(), mixed.end(),
+                   [](const auto& x, const auto& y) { return x.second > y.second; });
+  mixed.resize(std::min(mixed.size(), places.size()));
+  float total = 0;
+  for (const auto& m : mixed) total += m.second;
+  std::fill_n(out, channel.width, 0.0f);
+  for (std::size_t i = 0; i < mixed.size(); ++i) {
+    out[places[i].first] = mixed[i].first;
+    out[places[i].second] = mixed[i].second / total;
+  }
+}
+
+const float* ValueMerge::planned(std::size_t channel, std::uint32_t value) const {
+  const Plan& plan = plans_[channel];
+  const std::uint32_t root = plan.classes[plan.classes.index_of(value)].root;
+  return plan.values.data() + root * static_cast<std::size_t>(state_.channels[channel].width);
+}
+
+/// A class keeps the number of its value at b, if it has one there.
+std::uint32_t ValueMerge::kept_value(const ValueClasses& classes, std::uint32_t root) const {
+  for (std::size_t i = root; i < classes.size(); ++i) {
+    if (classes[i].root == root && classes[i].at_b) return classes[i].value;
+  }
+  return classes[root].value;
+}
+
+void ValueMerge::record_class(const Channel& channel, const Plan& plan, std::uint32_t root,
+                              std::uint32_t kept, std::uint32_t mesh, CollapseRecord& record) const {
+  const std::uint32_t first = channel.first_value[mesh];
+  for (const ChannelSlice& slice : channel.slices[mesh]) {
+    if (slice.layer != kInvalid) {
+      for (std::size_t i = root; i < plan.classes.size(); ++i) {
+        const auto& entry = plan.classes[i];
+        if (entry.root != root || entry.value == kept) continue;
+        record.joins.push_back({slice.layer, ValueId{entry.value - first}, ValueId{kept - first}});
+      }
+    }
+    record.writes.push_back({slice.layer, kept - first});
+    const float* values = channel.value(kept) + slice.offset;
+    record.floats.insert(record.floats.end(), values, values + slice.width);
+  }
+}
+
+void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, CollapseRecord& record) {
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    Channel& channel = state_.channels[i];
+    const Plan& plan = plans_[i];
+    if (plan.classes.size() == 0) continue;
+    const std::size_t stride = attribute_stride(channel.fit_width);
+    for (std::uint32_t root = 0; root < plan.classes.size(); ++root) {
+      if (plan.classes[root].root != root) continue;
+      const std::uint32_t kept = kept_value(plan.classes, root);
+      if (!channel.quadric.empty()) {
+        for (std::size_t j = root; j < plan.classes.size(); ++j) {
+          const auto& entry = plan.classes[j];
+          if (entry.root != root || entry.value == kept) continue;
+          const double* from = channel.value_quadric(entry.value);
+          double* to = channel.value_quadric(kept);
+          for (std::size_t k = 0; k < stride; ++k) to[k] += from[k];
+        }
+      }
+      std::copy_n(plan.values.data() + root * static_cast<std::size_t>(channel.width), channel.width,
+                  channel.value(kept));
+      record_class(channel, plan, root, kept, mesh, record);
+    }
+    const auto relabel = [&](std::uint32_t c) {
+      std::uint32_t& value = channel.corner_value[c];
+      if (value != kInvalid)
+        value = kept_value(plan.classes, plan.classes[plan.classes.index_of(value)].root);
+    };
+    state_.mesh.for_ring(a, relabel);
+    state_.mesh.for_ring(b, relabel);
+  }
+}
+
+void ValueMerge::update_singles(std::uint32_t b) {
+  for (Channel& channel : state_.channels) {
+    std::uint32_t single = kInvalid;
+    state_.mesh.for_ring(b, [&](std::uint32_t c) {
+      const std::uint32_t value = channel.corner_value[c];
+      if (value == kInvalid) return;
+      single = single == kInvalid || single == value ? value : Channel::kMany;
+    });
+    channel.single[b] = single;
+  }
+}
+
+}  // namespace fovea
