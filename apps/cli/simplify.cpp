@@ -56,8 +56,10 @@ class Simplify : public Verb {
     const Model model =
         session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
     const Snapshot before = snapshot(model, measure_file(input_, model));
-    const Importance importance =
-        session.phase("importance", [&] { return load_importance(importance_, model); });
+    Importance importance;
+    if (!importance_.empty()) {
+      importance = session.phase("importance", [&] { return load_importance(importance_, model); });
+    }
     const SimplifyResult result =
         session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });
     session.phase("write", [&] { write_model(result.model, output_, write_options_, session.context); });

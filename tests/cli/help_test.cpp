@@ -1,0 +1,124 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_command.h"
+
+namespace fovea::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(Help, NamesAllVerbs) {
+  const Outcome help = fovea({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.err, IsEmpty());
+  for (const char* verb : {"info", "simplify", "sample"}) EXPECT_THAT(help.out, HasSubstr(verb));
+  EXPECT_EQ(fovea({"-h"}).out, help.out);
+}
+
+TEST(Help, WithoutArgumentsIsAUsageErrorThatHelps) {
+  const Outcome nothing = fovea({});
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_THAT(nothing.out, IsEmpty());
+  EXPECT_THAT(nothing.err, HasSubstr("Usage:"));
+}
+
+TEST(Help, VersionIsThatOfTheProject) { EXPECT_EQ(fovea({"--version"}).out, "fovea " FOVEA_VERSION "\n"); }
+
+TEST(Help, EveryVerbHasUsageOptionsAndExamples) {
+  for (const std::string verb : {"info", "simplify", "sample"}) {
+    const Outcome help = fovea({verb, "--help"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_THAT(help.out, HasSubstr("Usage: fovea " + verb));
+    EXPECT_THAT(help.out, HasSubstr("Examples\n  fovea " + verb));
+    for (const char* flag : {"--json", "--quiet", "--threads", "--seed"})
+      EXPECT_THAT(help.out, HasSubstr(flag));
+    EXPECT_EQ(fovea({"help", verb}).out, help.out);
+    EXPECT_EQ(fovea({verb, "missing.glb", "-h"}).out, help.out) << "help wins over all that is wrong";
+  }
+}
+
+TEST(Help, OptionsShowRangeUnitAndDefault) {
+  const std::string help = fovea({"simplify", "--help"}).out;
+  EXPECT_THAT(help, HasSubstr("--ratio X"));
+  EXPECT_THAT(help, HasSubstr("[0..1"));
+  EXPECT_THAT(help, HasSubstr("[1..16"));
+  EXPECT_THAT(help, HasSubstr("default 14]"));
+  EXPECT_THAT(help, HasSubstr("--compression none|meshopt"));
+}
+
+TEST(Help, LinesFitATerminal) {
+  for (const std::string verb : {"info", "simplify", "sample"}) {
+    std::istringstream lines(fovea({verb, "--help"}).out);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+  }
+}
+
+// script/format does not make this page; `fovea --help=markdown > docs/options.md` does.
+TEST(Help, OptionsPageIsThatOfTheProgram) {
+  const Outcome page = fovea({"--help=markdown"});
+  EXPECT_EQ(page.code, 0);
+  EXPECT_EQ(page.out, read_text(FOVEA_OPTIONS_PAGE)) << "run: fovea --help=markdown > docs/options.md";
+}
+
+TEST(Suggestions, UnknownVerb) {
+  const Outcome typo = fovea({"simplfy", "a.glb"});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_EQ(typo.err, "fovea: error: unknown verb 'simplfy'\nhint: did you mean simplify?\n");
+}
+
+TEST(Suggestions, NothingNearListsTheVerbs) {
+  EXPECT_THAT(fovea({"qqqqqqqqqq"}).err, HasSubstr("verbs are: info, simplify, sample"));
+}
+
+TEST(Suggestions, FlagBeforeTheVerb) {
+  const Outcome early = fovea({"--json", "info", "a.glb"});
+  EXPECT_EQ(early.code, 2);
+  EXPECT_THAT(early.err, HasSubstr("a verb comes first"));
+}
+
+TEST(Suggestions, UnknownFlag) {
+  for (const char* typo : {"--ratoi", "--ratoi=0.5"}) {
+    const Outcome outcome = fovea({"simplify", "a.glb", "-o", "b.glb", typo, "0.5"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, "fovea: error: unknown option '--ratoi'\nhint: did you mean --ratio?\n");
+  }
+}
+
+TEST(Usage, RatioIsNotAPercentage) {
+  const Outcome outcome = fovea({"simplify", "a.glb", "-o", "b.glb", "--ratio", "10"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--ratio"));
+  EXPECT_THAT(outcome.err, HasSubstr("0.1 keeps 10 %"));
+}
+
+TEST(Usage, ValuesAreChecked) {
+  const std::vector<std::vector<std::string>> wrong{
+      {"--ratio", "ten"},
+      {"--ratio", "nan"},
+      {"--triangles", "-5"},
+      {"--triangles", "1e3"},
+      {"--ratio"},
+      {"--position-bits", "17"},
+      {"--placement", "any"},
+      {"--quantize=perhaps"},
+      {"--threads", "100000"},
+      {"--seed", ""},
+  };
+  for (std::vector<std::string> words : wrong) {
+    words.insert(words.begin(), {"simplify", "a.glb", "-o", "b.glb"});
+    const Outcome outcome = fovea(words);
+    EXPECT_EQ(outcome.code, 2) << words[4];
+    EXPECT_THAT(outcome.err, HasSubstr("fovea: error: ")) << words[4];
+  }
+}
+
+TEST(Usage, MissingAndSurplusArguments) {
+  EXPECT_THAT(fovea({"info"}).err, HasSubstr("MODEL is missing"));
+  EXPECT_THAT(fovea({"info", "a.glb", "b.glb"}).err, HasSubstr("'b.glb' is one argument too many"));
+  EXPECT_EQ(fovea({"info", "a.glb", "b.glb"}).code, 2);
+}
+
+}  // namespace
+}  // namespace fovea::test

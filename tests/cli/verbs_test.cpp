@@ -1,0 +1,222 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_command.h"
+
+namespace fovea::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// One model for all tests here: making it takes longer than reading it.
+class Verbs : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new Folder;
+    vase_ = *folder_ / "vase.glb";
+    made_ = fovea({"sample", "vase", "-o", vase_, "--detail", "0.1", "--json"});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string out(const std::string& name) { return *folder_ / name; }
+
+  static Folder* folder_;
+  static std::string vase_;
+  static Outcome made_;
+};
+Folder* Verbs::folder_ = nullptr;
+std::string Verbs::vase_;
+Outcome Verbs::made_;
+
+TEST_F(Verbs, SampleMakesAModel) {
+  ASSERT_EQ(made_.code, 0) << made_.err;
+  const nlohmann::json json = made_.json();
+  EXPECT_EQ(json["outputs"][0]["path"], vase_);
+  EXPECT_EQ(json["outputs"][0]["format"], "glb");
+  EXPECT_EQ(json["outputs"][0]["bytes"], std::filesystem::file_size(vase_));
+  EXPECT_GT(json["after"]["triangles"], 1000);
+  EXPECT_GT(json["after"]["bytes"]["images"], 0);
+}
+
+TEST_F(Verbs, SampleListNamesWhatSampleMakes) {
+  const Outcome list = fovea({"sample", "--list"});
+  EXPECT_EQ(list.code, 0);
+  for (const char* name : {"vase", "arm", "spheres", "terrain"}) EXPECT_THAT(list.out, HasSubstr(name));
+  const nlohmann::json json = fovea({"sample", "--list", "--json"}).json();
+  EXPECT_EQ(json["samples"][0]["name"], "vase");
+}
+
+TEST_F(Verbs, SampleSuggestsNames) {
+  const Outcome outcome = fovea({"sample", "vaes", "-o", out("vaes.glb")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("vase"));
+}
+
+TEST_F(Verbs, SampleWithoutANameOrWithoutOutput) {
+  EXPECT_THAT(fovea({"sample"}).err, HasSubstr("--list"));
+  EXPECT_THAT(fovea({"sample", "vase"}).err, HasSubstr("-o"));
+}
+
+TEST_F(Verbs, InfoJsonDescribesTheModel) {
+  const Outcome outcome = fovea({"info", vase_, "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  ASSERT_TRUE(json.is_object()) << outcome.out;
+  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["tool"]["version"], FOVEA_VERSION);
+  EXPECT_EQ(json["inputs"][0]["path"], vase_);
+  const nlohmann::json& mesh = json["meshes"][0];
+  EXPECT_GT(mesh["triangles"], 0);
+  EXPECT_GE(mesh["split_vertices"], mesh["vertices"]);
+  EXPECT_GE(mesh["components"], 1);
+  EXPECT_TRUE(mesh["edges"].contains("non_manifold"));
+  EXPECT_FALSE(mesh["layers"].empty());
+  EXPECT_GT(json["images"][0]["width"], 0);
+  EXPECT_EQ(json["materials"][0]["textures"][0]["role"], "base color");
+  EXPECT_GT(json["bounds"]["diagonal"], 0);
+  EXPECT_TRUE(json["diagnostics"].is_array());
+  EXPECT_GT(json["peak_memory_bytes"], 0);
+}
+
+TEST_F(Verbs, InfoBytesAddUpToTheFile) {
+  const nlohmann::json bytes = fovea({"info", vase_, "--json"}).json()["totals"]["bytes"];
+  EXPECT_EQ(bytes["files"], std::filesystem::file_size(vase_));
+  const auto sum = bytes["geometry"].get<std::uint64_t>() + bytes["images"].get<std::uint64_t>() +
+                   bytes["animation"].get<std::uint64_t>() + bytes["other"].get<std::uint64_t>();
+  EXPECT_EQ(sum, bytes["files"]);
+}
+
+TEST_F(Verbs, InfoTextNamesWhatIsInside) {
+  const Outcome outcome = fovea({"info", vase_});
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* word :
+       {"triangles", "Meshes", "TEXCOORD_0", "Materials", "base color", "Images", "Bytes"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(word));
+  }
+}
+
+TEST_F(Verbs, InfoQuietStillGivesTheData) {
+  EXPECT_THAT(fovea({"info", vase_, "--quiet"}).out, HasSubstr("Meshes"));
+}
+
+TEST_F(Verbs, InfoMeasuresGltfWithFilesBeside) {
+  // Three positions and three 16-bit indices, padded: 36 + 6 bytes of geometry in a buffer of 44.
+  const Folder folder;
+  folder.write("data.bin", std::string("\0\0\0\0\0\0\0\0\0\0\0\0"      // 0 0 0
+                                       "\0\0\x80\x3f\0\0\0\0\0\0\0\0"  // 1 0 0
+                                       "\0\0\0\0\0\0\x80\x3f\0\0\0\0"  // 0 1 0
+                                       "\0\0\1\0\2\0\0\0",
+                                       44));
+  const std::string text = R"({"asset":{"version":"2.0","generator":"by hand"},
+    "buffers":[{"uri":"data.bin","byteLength":44}],
+    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+                 {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],
+    "meshes":[{"name":"one","primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+    "nodes":[{"mesh":0},{"mesh":0,"translation":[2,0,0]}],"scenes":[{"nodes":[0,1]}],"scene":0})";
+  const std::string path = folder.write("one.gltf", text);
+  const Outcome outcome = fovea({"info", path, "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["generator"], "by hand");
+  EXPECT_EQ(json["totals"]["triangles"], 1);
+  EXPECT_EQ(json["totals"]["triangles_drawn"], 2);
+  EXPECT_EQ(json["totals"]["bytes"]["files"], text.size() + 44);
+  EXPECT_EQ(json["totals"]["bytes"]["geometry"], 42);
+  EXPECT_EQ(json["meshes"][0]["edges"]["boundary"], 3);
+  EXPECT_EQ(json["meshes"][0]["shown"], 2);
+}
+
+TEST_F(Verbs, SimplifyReportsBeforeAndAfter) {
+  const Outcome outcome = fovea({"simplify", vase_, "-o", out("tenth.glb"), "--ratio", "0.1", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  ASSERT_TRUE(json.is_object()) << outcome.out;
+  EXPECT_EQ(json["options"]["ratio"], 0.1);
+  EXPECT_TRUE(json["options"]["triangles"].is_null());
+  EXPECT_LE(json["after"]["triangles"], json["result"]["triangles_target"]);
+  EXPECT_LT(json["after"]["vertices"], json["before"]["vertices"]);
+  EXPECT_LT(json["after"]["bytes"]["geometry"], json["before"]["bytes"]["geometry"]);
+  EXPECT_EQ(json["after"]["bytes"]["images"], json["before"]["bytes"]["images"]);
+  EXPECT_EQ(json["after"]["bytes"]["files"], std::filesystem::file_size(out("tenth.glb")));
+  EXPECT_EQ(json["result"]["stop"], "target");
+  EXPECT_EQ(json["result"]["reached"], true);
+  EXPECT_GT(json["result"]["error_relative"], 0);
+  EXPECT_GT(json["result"]["error_absolute"], json["result"]["error_relative"].get<double>() * 0.01);
+  std::vector<std::string> phases;
+  for (const nlohmann::json& phase : json["phases"]) phases.push_back(phase["name"]);
+  EXPECT_THAT(phases, ::testing::ElementsAre("read", "simplify", "write"));
+  EXPECT_EQ(json["exit_code"], 0);
+}
+
+TEST_F(Verbs, SimplifyTellsItInText) {
+  const Outcome outcome = fovea({"simplify", vase_, "-o", out("text.glb"), "--ratio", "0.5"});
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* word :
+       {"before", "after", "triangles", "geometry", "images", "error", "stopped", "time"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(word));
+  }
+}
+
+TEST_F(Verbs, SimplifyQuietPrintsNothing) {
+  const Outcome outcome = fovea({"simplify", vase_, "-o", out("quiet.glb"), "--ratio", "0.5", "--quiet"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_TRUE(std::filesystem::exists(out("quiet.glb")));
+}
+
+TEST_F(Verbs, SimplifyWritesTheSameBytesForAnyThreads) {
+  EXPECT_EQ(
+      fovea({"simplify", vase_, "-o", out("one.glb"), "--ratio", "0.3", "--threads", "1", "--quiet"}).code,
+      0);
+  EXPECT_EQ(
+      fovea({"simplify", vase_, "-o", out("four.glb"), "--ratio", "0.3", "--threads", "4", "--quiet"}).code,
+      0);
+  EXPECT_TRUE(read_text(out("one.glb")) == read_text(out("four.glb")));
+}
+
+TEST_F(Verbs, SimplifyReplacesWithForce) {
+  folder_->write("old.glb", "old");
+  EXPECT_EQ(fovea({"simplify", vase_, "-o", out("old.glb"), "--ratio", "0.5", "--force", "--quiet"}).code, 0);
+  EXPECT_EQ(read_text(out("old.glb")).substr(0, 4), "glTF");
+}
+
+TEST_F(Verbs, SimplifyStopsAtAnErrorBound) {
+  const Outcome outcome = fovea({"simplify", vase_, "-o", out("bound.glb"), "--error", "0.001", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["result"]["stop"], "error");
+  EXPECT_LE(outcome.json()["result"]["error_relative"], 0.001);
+}
+
+TEST_F(Verbs, SimplifySaysWhyItIsStuck) {
+  const std::string square = folder_->write("square.obj", square_obj());
+  const Outcome outcome =
+      fovea({"simplify", square, "-o", out("stuck.glb"), "--triangles", "1", "--lock-boundary"});
+  EXPECT_EQ(outcome.code, 8);
+  EXPECT_THAT(outcome.out, HasSubstr("stuck"));
+  EXPECT_THAT(outcome.out, HasSubstr("drop --lock-boundary"));
+  EXPECT_THAT(outcome.err, HasSubstr("--allow-miss"));
+  EXPECT_TRUE(std::filesystem::exists(out("stuck.glb")));
+}
+
+TEST_F(Verbs, SimplifyAllowsAMiss) {
+  const std::string square = folder_->write("square.obj", square_obj());
+  const Outcome outcome = fovea({"simplify", square, "-o", out("missed.glb"), "--triangles", "1",
+                                 "--lock-boundary", "--allow-miss", "--json"});
+  EXPECT_EQ(outcome.code, 0);
+  const nlohmann::json result = outcome.json()["result"];
+  EXPECT_EQ(result["reached"], false);
+  EXPECT_EQ(result["stop"], "stuck");
+  EXPECT_GT(result["blocked"]["locked"], 0);
+}
+
+TEST_F(Verbs, VerboseTellsPhases) {
+  const Outcome outcome = fovea({"info", vase_, "-v"});
+  EXPECT_THAT(outcome.err, HasSubstr("fovea: read ..."));
+  EXPECT_THAT(outcome.err, HasSubstr("peak memory"));
+}
+
+}  // namespace
+}  // namespace fovea::test
