@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-namespace fovea {
+namespace fovea::gltf {
 
 namespace {
 
@@ -33,20 +33,19 @@ std::optional<DataReference> reference_kind(const Scope& scope, std::string_view
   return std::nullopt;
 }
 
-void walk(nlohmann::json& value, const Scope& scope, std::string& pointer,
-          const DataReferenceVisitor& visit) {
+void walk(Json& value, const Scope& scope, std::string& pointer, const DataReferenceVisitor& visit) {
   const std::size_t length = pointer.size();
   if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) {
       if (!value[i].is_structured()) continue;
-      pointer += "/" + std::to_string(i);
+      pointer.append("/").append(std::to_string(i));
       walk(value[i], scope.inside_array(), pointer, visit);
       pointer.resize(length);
     }
   } else if (value.is_object()) {
     for (auto& [name, member] : value.items()) {
       if (name == "extras") continue;
-      pointer += "/" + name;
+      pointer.append("/").append(pointer_step(name));
       if (member.is_structured()) {
         walk(member, scope.below(name), pointer, visit);
       } else if (member.is_number_integer()) {
@@ -59,9 +58,9 @@ void walk(nlohmann::json& value, const Scope& scope, std::string& pointer,
 
 }  // namespace
 
-void visit_data_references(nlohmann::json& object, const DataReferenceVisitor& visit) {
+void visit_data_references(Json& object, const DataReferenceVisitor& visit) {
   std::string pointer;
   walk(object, Scope{}, pointer, visit);
 }
 
-}  // namespace fovea
+}  // namespace fovea::gltf

@@ -1,0 +1,57 @@
+#include "fovea/io/gltf_read_state.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "fovea/io/gltf_references.h"
+
+namespace fovea::gltf {
+
+std::string Keeper::keep(Json object, const JsonView& at) {
+  visit_data_references(object, [&](DataReference kind, Json& number, const std::string& pointer) {
+    const Json value = number;
+    const JsonView reference = at.inner(value, pointer);
+    number = kind == DataReference::accessor ? carry_accessor(reference) : carry_view(reference);
+  });
+  std::string text = object.dump();
+  budget_.charge(text.size(), 1, at.place());
+  return text;
+}
+
+std::size_t Keeper::carry_accessor(const JsonView& reference) {
+  const auto [entry, is_new] =
+      carried_accessor_.emplace(data_.accessor_index(reference), model_.carried_accessors.size());
+  if (is_new) model_.carried_accessors.push_back(data_.read(entry->first));
+  return entry->second;
+}
+
+std::size_t Keeper::carry_view(const JsonView& reference) {
+  const auto [entry, is_new] =
+      carried_view_.emplace(data_.view_index(reference), model_.carried_buffer_views.size());
+  if (is_new) {
+    const auto bytes = data_.view(entry->first);
+    budget_.charge(bytes.size(), 1, reference.place());
+    model_.carried_buffer_views.emplace_back(bytes.begin(), bytes.end());
+  }
+  return entry->second;
+}
+
+Json without(const Json& object, std::initializer_list<const char*> members) {
+  Json rest = Json::object();
+  for (const auto& [name, member] : object.get_ref<const Json::object_t&>()) {
+    const bool dropped = std::any_of(members.begin(), members.end(),
+                                     [&name = name](const char* m) { return std::string_view(m) == name; });
+    // Appended as it is: names are distinct already, and looking for doubles would be quadratic.
+    if (!dropped) rest.get_ref<Json::object_t&>().emplace_back(name, member);
+  }
+  return rest;
+}
+
+bool remove_extension(Json& object, const char* name) {
+  const auto extensions = object.find("extensions");
+  if (extensions == object.end() || !extensions->is_object() || extensions->erase(name) == 0) return false;
+  if (extensions->empty()) object.erase("extensions");
+  return true;
+}
+
+}  // namespace fovea::gltf
