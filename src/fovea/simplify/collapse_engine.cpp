@@ -44,13 +44,11 @@ class Engine {
         max_error_(max_error),
         options_(options),
         context_(context),
-        edge_count_(static_cast<std::uint32_t>(mesh_.edge_vertex.size())),
+        edge_count_(static_cast<std::uint32_t>(mesh_.edges.size())),
         queue_(edge_count_ + state.components.count()),
         tries_(edge_count_, 0),
         legality_(state),
-        merge_(state, options.placement),
-        edge_at_(state.vertices.size()),
-        edge_mark_(state.vertices.size(), 0) {}
+        merge_(state, options.placement) {}
 
   CollapseOutcome run() {
     fill_queue();
@@ -103,9 +101,6 @@ class Engine {
   bool over_error_ = false;
 
   // Scratch of commit().
-  std::vector<std::uint32_t> edge_at_;    // [#V], edge from b to there
-  std::vector<std::uint32_t> edge_mark_;  // [#V], whether edge_at_ holds in this step
-  std::uint32_t mark_ = 0;
   std::vector<std::uint32_t> ring_, touched_edges_;
 };
 
@@ -144,7 +139,7 @@ void Engine::subtract_channel(Quadric& q, const Channel& channel, std::uint32_t 
 
 /// Error of the merged vertex as a function of its position, attributes at their best.
 Quadric Engine::edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scratch) const {
-  Quadric q = state_.vertices[a].quadric + state_.vertices[b].quadric;
+  Quadric q = mesh_.vertices[a].quadric + mesh_.vertices[b].quadric;
   for (const Channel& channel : state_.channels) {
     if (channel.kind == ChannelKind::fitted) subtract_channel(q, channel, a, b, scratch);
   }
@@ -153,7 +148,7 @@ Quadric Engine::edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scr
 
 /// The ends of the edge, as far as they may move, and its middle: cheapest first. At most three.
 std::size_t Engine::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const {
-  const Vec3d pa = state_.vertices[a].position, pb = state_.vertices[b].position;
+  const Vec3d pa = mesh_.vertices[a].position, pb = mesh_.vertices[b].position;
   std::size_t count = 0;
   const auto add = [&](Vec3d p) {
     Candidate c{std::max(q.value(p), 0.0), p};
@@ -161,15 +156,15 @@ std::size_t Engine::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q
     for (; at > 0 && out[at - 1].cost > c.cost; --at) out[at] = out[at - 1];
     out[at] = c;
   };
-  if (!state_.locked[a]) add(pb);
-  if (!state_.locked[b]) add(pa);
+  if (!mesh_.vertices[a].locked) add(pb);
+  if (!mesh_.vertices[b].locked) add(pa);
   if (count == 2 && options_.placement == Placement::optimal) add((pa + pb) * 0.5);
   return count;
 }
 
 Candidate Engine::best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const {
-  if (options_.placement == Placement::optimal && !state_.locked[a] && !state_.locked[b]) {
-    const Vec3d pa = state_.vertices[a].position, pb = state_.vertices[b].position;
+  if (options_.placement == Placement::optimal && !mesh_.vertices[a].locked && !mesh_.vertices[b].locked) {
+    const Vec3d pa = mesh_.vertices[a].position, pb = mesh_.vertices[b].position;
     Candidate best;
     if (q.minimum(best.position) &&
         length_squared(best.position - (pa + pb) * 0.5) <= kReach * kReach * length_squared(pb - pa)) {
@@ -186,7 +181,7 @@ void Engine::fill_queue() {
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
     ValueClasses scratch;
     for (std::size_t e = begin; e < end; ++e) {
-      const auto [a, b] = mesh_.edge_vertex[e];
+      const auto [a, b] = mesh_.edges[e];
       cost[e] = static_cast<float>(best_place(a, b, edge_quadric(a, b, scratch)).cost);
     }
   });
@@ -222,7 +217,7 @@ StopReason Engine::loop() {
 
 /// Collapses edge e if that is legal at about the cost that it is queued for; else puts it back.
 void Engine::try_edge(std::uint32_t e) {
-  const auto [a, b] = mesh_.edge_vertex[e];
+  const auto [a, b] = mesh_.edges[e];
   if (!legality_.look_at(a, b) && (legality_.topology() == Block::last || options_.keep_topology)) {
     put_off(e);
     return;
@@ -262,7 +257,7 @@ void Engine::take_or_requeue(std::uint32_t e, const Quadric& q, const Candidate&
     queue_.remove(e);
     return;
   }
-  commit(mesh_.edge_vertex[e][0], mesh_.edge_vertex[e][1], where, error);
+  commit(mesh_.edges[e][0], mesh_.edges[e][1], where, error);
 }
 
 void Engine::put_off(std::uint32_t e) {
@@ -284,8 +279,8 @@ void Engine::try_vanish(std::uint32_t component) {
   }
   if (ring_.empty() || ring_.size() == mesh_.live_faces) return;
   for (const std::uint32_t f : ring_) {
-    for (const std::uint32_t v : mesh_.face_vertex[f]) {
-      if (state_.locked[v]) return;
+    for (const std::uint32_t v : mesh_.faces[f].vertex) {
+      if (mesh_.vertices[v].locked) return;
     }
   }
   if (state_.vanish[component].error > max_error_) {
@@ -305,13 +300,14 @@ void Engine::try_vanish(std::uint32_t component) {
 // --- Carrying out a collapse -----------------------------------------------------------------------
 
 void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error) {
-  if (state_.locked[a] || (!state_.locked[b] && where.position == state_.vertices[a].position)) {
+  if (mesh_.vertices[a].locked ||
+      (!mesh_.vertices[b].locked && where.position == mesh_.vertices[a].position)) {
     std::swap(a, b);
     merge_.plan(a, b, where.position);
   }
   const std::uint32_t m = state_.slot_of_vertex(a);
   const MeshSlot& slot = state_.slots[m];
-  const bool moved = !(where.position == state_.vertices[b].position);
+  const bool moved = !(where.position == mesh_.vertices[b].position);
 
   merge_.apply(a, b, m, outcome_.record);
   touched_edges_.clear();
@@ -321,9 +317,9 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   drop_unused_edges();
   merge_.update_singles(b);
 
-  state_.vertices[b].position = where.position;
-  state_.vertices[b].quadric += state_.vertices[a].quadric;
-  state_.locked[b] |= state_.locked[a];
+  mesh_.vertices[b].position = where.position;
+  mesh_.vertices[b].quadric += mesh_.vertices[a].quadric;
+  mesh_.vertices[b].locked |= mesh_.vertices[a].locked;
   update_costs(b);
 
   CollapseStep step;
@@ -337,7 +333,7 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
 
 void Engine::drop_face(std::uint32_t f) {
   for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
-    touched_edges_.push_back(mesh_.corner_edge[c]);
+    touched_edges_.push_back(mesh_.edge(c));
     mesh_.unlink_corner(c);
   }
   mesh_.kill_face(f);
@@ -355,25 +351,24 @@ void Engine::drop_shared_faces(std::uint32_t a, std::uint32_t b) {
 
 /// Gives a's triangles and edges to b; two edges to the same neighbour become one.
 void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
-  ++mark_;
+  // A neighbour of b is marked, with its edge to b.
+  const std::uint32_t mark = mesh_.new_mark();
   const auto note = [&](std::uint32_t w, std::uint32_t e) {
-    edge_mark_[w] = mark_;
-    edge_at_[w] = e;
+    mesh_.vertices[w].mark = mark;
+    mesh_.vertices[w].mark_count = e;
   };
   mesh_.for_ring(b, [&](std::uint32_t c) {
-    note(mesh_.vertex(CollapseMesh::next(c)), mesh_.corner_edge[c]);
-    note(mesh_.vertex(CollapseMesh::previous(c)), mesh_.corner_edge[CollapseMesh::previous(c)]);
+    note(mesh_.vertex(CollapseMesh::next(c)), mesh_.edge(c));
+    note(mesh_.vertex(CollapseMesh::previous(c)), mesh_.edge(CollapseMesh::previous(c)));
   });
   const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
-    const std::uint32_t e = mesh_.corner_edge[half_edge];
-    if (edge_mark_[w] == mark_) {
-      if (edge_at_[w] != e) {
-        touched_edges_.push_back(e);
-        mesh_.corner_edge[half_edge] = edge_at_[w];
-      }
+    const std::uint32_t e = mesh_.edge(half_edge);
+    if (mesh_.vertices[w].mark == mark) {
+      mesh_.edge(half_edge) = mesh_.vertices[w].mark_count;
+      if (mesh_.edge(half_edge) != e) touched_edges_.push_back(e);
     } else {
       note(w, e);
-      mesh_.edge_vertex[e] = {b, w};
+      mesh_.edges[e] = {b, w};
     }
   };
   ring_.clear();
@@ -382,15 +377,17 @@ void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
     take_over(c, mesh_.vertex(CollapseMesh::next(c)));
     take_over(CollapseMesh::previous(c), mesh_.vertex(CollapseMesh::previous(c)));
   }
-  for (const std::uint32_t c : ring_) mesh_.face_vertex[c / 3][c % 3] = b;
+  for (const std::uint32_t c : ring_) mesh_.faces[c / 3].vertex[c % 3] = b;
   if (ring_.empty()) return;
   // Splice the two circles.
-  if (mesh_.vertex_corner[b] == kInvalid) {
-    mesh_.vertex_corner[b] = mesh_.vertex_corner[a];
+  std::uint32_t &first_a = mesh_.vertices[a].first_corner, &first_b = mesh_.vertices[b].first_corner;
+  if (first_b == kInvalid) {
+    first_b = first_a;
   } else {
-    std::swap(mesh_.corner_next[mesh_.vertex_corner[a]], mesh_.corner_next[mesh_.vertex_corner[b]]);
+    std::swap(mesh_.faces[first_a / 3].next_corner[first_a % 3],
+              mesh_.faces[first_b / 3].next_corner[first_b % 3]);
   }
-  mesh_.vertex_corner[a] = kInvalid;
+  first_a = kInvalid;
 }
 
 /// After a collapse that pinches the surface two triangles can lie on each other. Back to back they
@@ -422,9 +419,12 @@ void Engine::drop_coincident_faces(std::uint32_t b) {
 void Engine::drop_unused_edges() {
   for (const std::uint32_t e : touched_edges_) {
     if (!mesh_.edge_alive(e)) continue;
+    // Scan from the end that has fewer triangles: a vertex that was merged away has none.
+    const auto [v, w] = mesh_.edges[e];
+    const std::uint32_t from = mesh_.vertices[w].first_corner == kInvalid ? w : v;
     bool used = false;
-    mesh_.for_ring(mesh_.edge_vertex[e][0], [&](std::uint32_t c) {
-      used = used || mesh_.corner_edge[c] == e || mesh_.corner_edge[CollapseMesh::previous(c)] == e;
+    mesh_.for_ring(from, [&](std::uint32_t c) {
+      used = used || mesh_.edge(c) == e || mesh_.edge(CollapseMesh::previous(c)) == e;
     });
     if (used) continue;
     mesh_.kill_edge(e);
@@ -434,10 +434,10 @@ void Engine::drop_unused_edges() {
 
 /// Costs the edges at b again; those that had been given up get another chance.
 void Engine::update_costs(std::uint32_t b) {
-  ++mark_;
+  const std::uint32_t mark = mesh_.new_mark();
   const auto update = [&](std::uint32_t e, std::uint32_t w) {
-    if (edge_mark_[w] == mark_) return;
-    edge_mark_[w] = mark_;
+    if (mesh_.vertices[w].mark == mark) return;
+    mesh_.vertices[w].mark = mark;
     tries_[e] = 0;
     const double cost = best_place(b, w, edge_quadric(b, w, classes_)).cost;
     if (std::isfinite(cost)) {
@@ -447,8 +447,8 @@ void Engine::update_costs(std::uint32_t b) {
     }
   };
   mesh_.for_ring(b, [&](std::uint32_t c) {
-    update(mesh_.corner_edge[c], mesh_.vertex(CollapseMesh::next(c)));
-    update(mesh_.corner_edge[CollapseMesh::previous(c)], mesh_.vertex(CollapseMesh::previous(c)));
+    update(mesh_.edge(c), mesh_.vertex(CollapseMesh::next(c)));
+    update(mesh_.edge(CollapseMesh::previous(c)), mesh_.vertex(CollapseMesh::previous(c)));
   });
 }
 
@@ -468,8 +468,8 @@ void Engine::count_blocked() {
   for (std::uint32_t e = 0; e < edge_count_; ++e) {
     if (!mesh_.edge_alive(e)) continue;
     ++outcome_.blocked.edges;
-    const auto [a, b] = mesh_.edge_vertex[e];
-    if (state_.locked[a] && state_.locked[b]) {
+    const auto [a, b] = mesh_.edges[e];
+    if (mesh_.vertices[a].locked && mesh_.vertices[b].locked) {
       ++outcome_.blocked.locked;
     } else if (!legality_.look_at(a, b)) {
       ++(legality_.topology() == Block::last ? outcome_.blocked.last : outcome_.blocked.topology);

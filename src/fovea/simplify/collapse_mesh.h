@@ -2,47 +2,66 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "fovea/base/math.h"
 #include "fovea/model/ids.h"
+#include "fovea/simplify/quadric.h"
 
 namespace fovea {
+
+/// A triangle of the engine with all links that start in it, together because they are read together.
+struct CollapseFace {
+  std::array<std::uint32_t, 3> vertex;       ///< kInvalid first if the face is gone.
+  std::array<std::uint32_t, 3> next_corner;  ///< The next corner in the ring of the same vertex.
+  std::array<std::uint32_t, 3> edge;         ///< Edge from this corner's vertex to the next corner's.
+};
+
+/// A vertex of the engine. Two cache lines, the first with what a look at the neighbourhood needs.
+struct alignas(64) CollapseVertex {
+  Vec3d position;                         ///< In units of the scene's diagonal, around the mesh's centre.
+  std::uint32_t first_corner = kInvalid;  ///< Any corner of the ring; kInvalid without triangles.
+  std::uint32_t mark = 0;                 ///< Scratch of whoever looks around; see CollapseMesh::new_mark.
+  std::uint32_t mark_count = 0;           ///< Scratch that holds while `mark` does.
+  bool locked = false;                    ///< Must stay where it is.
+  Quadric quadric;
+};
 
 /// Triangles that can lose edges: the connectivity of the collapse engine.
 ///
 /// Nothing is assumed of the surface; an edge is a pair of vertices with any number of triangles. The
 /// corners at a vertex form a ring (a circular list, in no geometric order); corner i of triangle f is
-/// 3 f + i, and the edge of a corner is the one from its vertex to the next corner's.
+/// 3 f + i.
 ///
-///            next(c)                    ring of v: its corners, linked by `corner_next`
-///              /\                       corner_edge[c]: edge v – w
-///   v at c ---/--\                      corner_edge[previous(c)]: edge u – v
+///            next(c)                    ring of v: its corners, linked by next_corner
+///              /\                       edge of c: v – w
+///   v at c ---/--\                      edge of previous(c): u – v
 struct CollapseMesh {
-  std::vector<std::array<std::uint32_t, 3>> face_vertex;  ///< [#F]; a removed face has kInvalid first.
-  std::vector<std::uint32_t> corner_next;                 ///< [#F × 3]
-  std::vector<std::uint32_t> corner_edge;                 ///< [#F × 3]
-  std::vector<std::uint32_t> vertex_corner;               ///< [#V], any corner of it, or kInvalid.
-  std::vector<std::array<std::uint32_t, 2>> edge_vertex;  ///< [#E]; a removed edge has kInvalid first.
+  std::vector<CollapseFace> faces;                  ///< [#F]
+  std::vector<CollapseVertex> vertices;             ///< [#V]
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< [#E], ends; a removed edge has kInvalid first.
   std::size_t live_faces = 0;
 
-  CollapseMesh() = default;
-  /// Builds rings and edges. O(#F).
-  CollapseMesh(std::vector<std::array<std::uint32_t, 3>> faces, std::size_t vertex_count);
+  /// Builds rings and edges from `vertex` of all faces, which are distinct. O(#F).
+  void link();
 
   static std::uint32_t next(std::uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
   static std::uint32_t previous(std::uint32_t c) { return c % 3 == 0 ? c + 2 : c - 1; }
-  std::uint32_t vertex(std::uint32_t c) const { return face_vertex[c / 3][c % 3]; }
-  bool face_alive(std::uint32_t f) const { return face_vertex[f][0] != kInvalid; }
-  bool edge_alive(std::uint32_t e) const { return edge_vertex[e][0] != kInvalid; }
+  std::uint32_t vertex(std::uint32_t c) const { return faces[c / 3].vertex[c % 3]; }
+  std::uint32_t edge(std::uint32_t c) const { return faces[c / 3].edge[c % 3]; }
+  std::uint32_t& edge(std::uint32_t c) { return faces[c / 3].edge[c % 3]; }
+  bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
+  bool edge_alive(std::uint32_t e) const { return edges[e][0] != kInvalid; }
 
   /// Calls f(corner) for the corners at v.
   template <class F>
   void for_ring(std::uint32_t v, F&& f) const {
-    const std::uint32_t first = vertex_corner[v];
+    const std::uint32_t first = vertices[v].first_corner;
     if (first == kInvalid) return;
     std::uint32_t c = first;
     do {
-      const std::uint32_t following = corner_next[c];
+      const std::uint32_t following = faces[c / 3].next_corner[c % 3];
       f(c);
       c = following;
     } while (c != first);
@@ -52,10 +71,15 @@ struct CollapseMesh {
   void unlink_corner(std::uint32_t c);
   /// Marks a face as removed; its corners must be out of the rings already.
   void kill_face(std::uint32_t f) {
-    face_vertex[f][0] = kInvalid;
+    faces[f].vertex[0] = kInvalid;
     --live_faces;
   }
-  void kill_edge(std::uint32_t e) { edge_vertex[e][0] = kInvalid; }
+  void kill_edge(std::uint32_t e) { edges[e][0] = kInvalid; }
+  /// A number that no vertex's `mark` has; the three after it are free as well.
+  std::uint32_t new_mark();
+
+ private:
+  std::uint32_t last_mark_ = 0;
 };
 
 /// Faces on each edge [#E], saturated at 3.

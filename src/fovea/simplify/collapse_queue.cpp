@@ -12,29 +12,29 @@ std::uint32_t CollapseQueue::first() {
 }
 
 void CollapseQueue::link(std::uint32_t item, std::uint16_t bucket) {
-  if (bucket_[item] == bucket) return;
+  if (links_[item].bucket == bucket) return;
   if (contains(item)) unlink(item);
   const std::uint32_t head = head_[bucket];
-  bucket_[item] = bucket;
-  next_[item] = head;
-  previous_[item] = kInvalid;
-  if (head != kInvalid) previous_[head] = item;
+  links_[item].bucket = bucket;
+  links_[item].next = head;
+  links_[item].previous = kInvalid;
+  if (head != kInvalid) links_[head].previous = item;
   head_[bucket] = item;
   occupied_[bucket / 64] |= std::uint64_t{1} << (bucket % 64);
   lowest_word_ = std::min<std::size_t>(lowest_word_, bucket / 64);
 }
 
 void CollapseQueue::unlink(std::uint32_t item) {
-  const std::uint16_t bucket = bucket_[item];
-  const std::uint32_t next = next_[item], previous = previous_[item];
-  if (next != kInvalid) previous_[next] = previous;
+  const std::uint16_t bucket = links_[item].bucket;
+  const std::uint32_t next = links_[item].next, previous = links_[item].previous;
+  if (next != kInvalid) links_[next].previous = previous;
   if (previous != kInvalid) {
-    next_[previous] = next;
+    links_[previous].next = next;
   } else {
     head_[bucket] = next;
     if (next == kInvalid) occupied_[bucket / 64] &= ~(std::uint64_t{1} << (bucket % 64));
   }
-  bucket_[item] = kNone;
+  links_[item].bucket = kNone;
 }
 
 }  // namespace fovea

@@ -103,19 +103,21 @@ void Builder::place_meshes(std::span<const double> scales, double diagonal) {
     vertices += meshes_[m]->vertex_count();
     faces += meshes_[m]->face_count();
   }
+  state_.mesh.vertices.reserve(vertices);
+  state_.mesh.faces.reserve(faces);
 }
 
 void Builder::make_connectivity() {
-  std::vector<std::array<std::uint32_t, 3>> faces;
+  CollapseMesh& all = state_.mesh;
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshSlot& slot = state_.slots[m];
     for (const auto& t : meshes_[m]->triangles) {
-      faces.push_back(
-          {slot.first_vertex + t[0].value, slot.first_vertex + t[1].value, slot.first_vertex + t[2].value});
+      CollapseFace& face = all.faces.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) face.vertex[k] = slot.first_vertex + t[k].value;
     }
-    for (const Vec3f& p : meshes_[m]->positions) state_.vertices.push_back({slot.to_engine(p), {}});
+    for (const Vec3f& p : meshes_[m]->positions) all.vertices.emplace_back().position = slot.to_engine(p);
   }
-  state_.mesh = CollapseMesh(std::move(faces), state_.vertices.size());
+  all.link();
 }
 
 ChannelKind Builder::kind_of(Semantic semantic) const {
@@ -192,7 +194,7 @@ void Builder::make_channels() {
     channel.slices.resize(meshes_.size());
     channel.first_value.assign(meshes_.size(), 0);
     channel.scale.assign(meshes_.size(), 1.0);
-    channel.corner_value.reserve(state_.mesh.corner_next.size());
+    channel.corner_value.reserve(3 * state_.mesh.faces.size());
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     add_layer_channels(m);
@@ -278,15 +280,14 @@ void Builder::add_morph_channel(std::size_t m) {
 }
 
 void Builder::make_locks() {
-  state_.locked.assign(state_.vertices.size(), 0);
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     if (importance_.empty() || importance_[m] == nullptr || importance_[m]->empty()) continue;
-    if (importance_weight_.empty()) importance_weight_.assign(state_.vertices.size(), 1.0);
+    if (importance_weight_.empty()) importance_weight_.assign(state_.mesh.vertices.size(), 1.0);
     for (std::size_t v = 0; v < importance_[m]->size(); ++v) {
       const float w = importance_[m]->values()[v];
       const std::size_t at = state_.slots[m].first_vertex + v;
       if (std::isinf(w)) {
-        state_.locked[at] = 1;
+        state_.mesh.vertices[at].locked = true;
       } else {
         importance_weight_[at] = w;
       }
@@ -295,19 +296,19 @@ void Builder::make_locks() {
   if (!options_.lock_boundary) return;
   for (std::size_t e = 0; e < edge_faces_.size(); ++e) {
     if (edge_faces_[e] != 1) continue;
-    for (const std::uint32_t v : state_.mesh.edge_vertex[e]) state_.locked[v] = 1;
+    for (const std::uint32_t v : state_.mesh.edges[e]) state_.mesh.vertices[v].locked = true;
   }
 }
 
 void Builder::measure_faces() {
-  const std::size_t faces = state_.mesh.face_vertex.size();
+  const std::size_t faces = state_.mesh.faces.size();
   normal_.resize(faces);
   area_.resize(faces);
   parallel_for(context_, faces, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
-      const auto& t = state_.mesh.face_vertex[f];
-      const Vec3d p = state_.vertices[t[0]].position;
-      const Vec3d n = cross(state_.vertices[t[1]].position - p, state_.vertices[t[2]].position - p);
+      const auto& t = state_.mesh.faces[f].vertex;
+      const Vec3d p = state_.mesh.vertices[t[0]].position;
+      const Vec3d n = cross(state_.mesh.vertices[t[1]].position - p, state_.mesh.vertices[t[2]].position - p);
       const double l = length(n);
       area_[f] = 0.5 * l;
       normal_[f] = l > 0 ? n / l : Vec3d{};
@@ -316,7 +317,7 @@ void Builder::measure_faces() {
 }
 
 void Builder::find_single_values(Channel& channel) const {
-  channel.single.assign(state_.vertices.size(), kInvalid);
+  channel.single.assign(state_.mesh.vertices.size(), kInvalid);
   for (std::size_t c = 0; c < channel.corner_value.size(); ++c) {
     const std::uint32_t value = channel.corner_value[c];
     if (value == kInvalid) continue;
@@ -356,9 +357,9 @@ void Builder::scale_channel(Channel& channel) const {
 }
 
 void Builder::add_surface_quadrics() {
-  parallel_for(context_, state_.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context_, state_.mesh.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      CollapseVertex& vertex = state_.vertices[v];
+      CollapseVertex& vertex = state_.mesh.vertices[v];
       const double importance = weight_of(static_cast<std::uint32_t>(v));
       double weight = 0;
       state_.mesh.for_ring(static_cast<std::uint32_t>(v), [&](std::uint32_t c) {
@@ -377,21 +378,21 @@ void Builder::add_attribute_quadrics(Channel& channel) {
   channel.quadric.assign(channel.values.size() / static_cast<std::size_t>(channel.width) * stride, 0.0);
   const int width = channel.fit_width;
   // Gathered per vertex: a value belongs to one vertex, so vertices do not share anything.
-  parallel_for(context_, state_.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context_, state_.mesh.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3d> gradient(static_cast<std::size_t>(width));
     std::vector<double> origin(static_cast<std::size_t>(width));
     for (std::size_t v = begin; v < end; ++v) {
-      Quadric& quadric = state_.vertices[v].quadric;
+      Quadric& quadric = state_.mesh.vertices[v].quadric;
       const double importance = weight_of(static_cast<std::uint32_t>(v));
       state_.mesh.for_ring(static_cast<std::uint32_t>(v), [&](std::uint32_t c) {
         const std::uint32_t f = c / 3;
         const std::uint32_t own = channel.corner_value[c];
         if (own == kInvalid || !(area_[f] > 1e-16)) return;
         const double scale = channel.scale[state_.slot_of_face(f)];
-        const Vec3d p0 = state_.vertices[state_.mesh.face_vertex[f][0]].position;
-        const TriangleGradient along(state_.vertices[state_.mesh.face_vertex[f][1]].position - p0,
-                                     state_.vertices[state_.mesh.face_vertex[f][2]].position - p0, normal_[f],
-                                     2 * area_[f]);
+        const Vec3d p0 = state_.mesh.vertices[state_.mesh.faces[f].vertex[0]].position;
+        const TriangleGradient along(state_.mesh.vertices[state_.mesh.faces[f].vertex[1]].position - p0,
+                                     state_.mesh.vertices[state_.mesh.faces[f].vertex[2]].position - p0,
+                                     normal_[f], 2 * area_[f]);
         const float* s[3];
         for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * f + k]);
         double steepness = 0;
@@ -442,18 +443,19 @@ bool Builder::is_seam(std::uint32_t a, std::uint32_t b) const {
 /// Planes through boundary and seam edges, upright on their faces, hold the curves in place.
 void Builder::add_edge_quadrics() {
   const CollapseMesh& mesh = state_.mesh;
-  std::vector<std::uint32_t> first_corner(mesh.edge_vertex.size(), kInvalid);
+  std::vector<std::uint32_t> first_corner(mesh.edges.size(), kInvalid);
   const auto hold = [&](std::uint32_t c, double weight) {
     const std::uint32_t v = mesh.vertex(c), w = mesh.vertex(CollapseMesh::next(c));
-    const Vec3d edge = state_.vertices[w].position - state_.vertices[v].position;
+    const Vec3d edge = state_.mesh.vertices[w].position - state_.mesh.vertices[v].position;
     const Vec3d upright = normalized(cross(normal_[c / 3], edge));
-    const double d = -dot(upright, state_.vertices[v].position);
+    const double d = -dot(upright, state_.mesh.vertices[v].position);
     for (const std::uint32_t end : {v, w}) {
-      state_.vertices[end].quadric.add_linear(upright, d, 0.5 * weight * weight_of(end) * dot(edge, edge));
+      state_.mesh.vertices[end].quadric.add_linear(upright, d,
+                                                   0.5 * weight * weight_of(end) * dot(edge, edge));
     }
   };
-  for (std::uint32_t c = 0; c < mesh.corner_edge.size(); ++c) {
-    const std::uint32_t e = mesh.corner_edge[c];
+  for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {
+    const std::uint32_t e = mesh.edge(c);
     if (edge_faces_[e] == 1) {
       hold(c, kBoundaryWeight * options_.boundary_weight);
     } else if (edge_faces_[e] == 2) {
@@ -476,8 +478,8 @@ void Builder::price_components() {
     double weight = 0;
     for (std::uint32_t k = state_.components.first[i]; k < state_.components.first[i + 1]; ++k) {
       const std::uint32_t f = state_.components.faces[k];
-      for (const std::uint32_t v : state_.mesh.face_vertex[f]) {
-        box.add(state_.vertices[v].position);
+      for (const std::uint32_t v : state_.mesh.faces[f].vertex) {
+        box.add(state_.mesh.vertices[v].position);
         weight += area_[f] / 3 * weight_of(v);
       }
     }

@@ -68,12 +68,6 @@ struct MeshSlot {
   Vec3f to_local(Vec3d p) const { return Vec3f(p / scale + center); }
 };
 
-/// One vertex of the engine.
-struct CollapseVertex {
-  Vec3d position;  ///< In units of the scene's diagonal, around the mesh's centre.
-  Quadric quadric;
-};
-
 /// A whole component as a candidate to go.
 struct VanishCandidate {
   double cost = 0;
@@ -85,7 +79,6 @@ struct VanishCandidate {
 struct CollapseState {
   CollapseMesh mesh;
   std::vector<CollapseVertex> vertices;  // [#V]
-  std::vector<std::uint8_t> locked;      // [#V]
   std::vector<Channel> channels;
   std::vector<MeshSlot> slots;  // [#meshes]
   FaceComponents components;

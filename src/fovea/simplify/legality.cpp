@@ -18,30 +18,27 @@ double longest_squared(Vec3d a, Vec3d b, Vec3d c) {
 }  // namespace
 
 bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
-  const CollapseMesh& mesh = state_.mesh;
-  ++look_;
+  CollapseMesh& mesh = state_.mesh;
+  // A neighbour of a is marked `at_a`; one of b `at_b`; one of both, `at_both`; `counted` once it has
+  // been seen across the edge. `mark_count` counts the triangles on its edge to a, then to b.
+  const std::uint32_t at_a = mesh.new_mark(), at_b = at_a + 1, at_both = at_a + 2, counted = at_a + 3;
   topology_ = Block::none;
-  std::size_t surviving = 0, common = 0, across = 0;
-  bool boundary_a = false, boundary_b = false;
-
-  const auto visit = [&](std::vector<std::uint32_t>& mark, std::uint32_t w) {
-    if (mark[w] == look_) {
-      if (count_[w] < 3) ++count_[w];
-      return false;
-    }
-    mark[w] = look_;
-    count_[w] = 1;
-    return true;
-  };
-  mesh.for_ring(a, [&](std::uint32_t c) {
-    visit(mark_a_, mesh.vertex(CollapseMesh::next(c)));
-    visit(mark_a_, mesh.vertex(CollapseMesh::previous(c)));
-  });
-  const std::uint8_t faces_on_edge = count_[b];
   far_edges_.clear();
+  std::size_t surviving = 0, common = 0, across = 0;
+  bool boundary_a = false, boundary_b = false, coincide = false;
+
+  mesh.for_ring(a, [&](std::uint32_t c) {
+    for (const std::uint32_t w :
+         {mesh.vertex(CollapseMesh::next(c)), mesh.vertex(CollapseMesh::previous(c))}) {
+      CollapseVertex& vertex = mesh.vertices[w];
+      vertex.mark_count = vertex.mark == at_a ? vertex.mark_count + 1 : 1;
+      vertex.mark = at_a;
+    }
+  });
+  const std::uint32_t faces_on_edge = mesh.vertices[b].mark_count;
   mesh.for_ring(a, [&](std::uint32_t c) {
     const std::uint32_t n = mesh.vertex(CollapseMesh::next(c)), p = mesh.vertex(CollapseMesh::previous(c));
-    boundary_a = boundary_a || count_[n] == 1 || count_[p] == 1;
+    boundary_a = boundary_a || mesh.vertices[n].mark_count == 1 || mesh.vertices[p].mark_count == 1;
     if (n == b || p == b) return;
     ++surviving;
     far_edges_.emplace_back(n, p);
@@ -49,26 +46,29 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   mesh.for_ring(b, [&](std::uint32_t c) {
     for (const std::uint32_t w :
          {mesh.vertex(CollapseMesh::next(c)), mesh.vertex(CollapseMesh::previous(c))}) {
-      if (visit(mark_b_, w) && mark_a_[w] == look_ && w != a) ++common;
+      CollapseVertex& vertex = mesh.vertices[w];
+      if (vertex.mark == at_b || vertex.mark == at_both) {
+        ++vertex.mark_count;
+        continue;
+      }
+      const bool shared = vertex.mark == at_a;
+      common += shared;
+      vertex.mark = shared ? at_both : at_b;
+      vertex.mark_count = 1;
     }
   });
-  // Distinct vertices across the edge: marked once more by taking them out of mark_b_.
-  bool coincide = false;
   mesh.for_ring(b, [&](std::uint32_t c) {
     const std::uint32_t n = mesh.vertex(CollapseMesh::next(c)), p = mesh.vertex(CollapseMesh::previous(c));
-    boundary_b = boundary_b || count_[n] == 1 || count_[p] == 1;
-    if (n != a && p != a) {
-      ++surviving;
-      if (mark_a_[n] == look_ && mark_a_[p] == look_) {
-        for (const auto& [x, y] : far_edges_) coincide = coincide || (x == n && y == p) || (x == p && y == n);
-      }
+    boundary_b = boundary_b || mesh.vertices[n].mark_count == 1 || mesh.vertices[p].mark_count == 1;
+    if (n == a || p == a) {
+      CollapseVertex& opposite = mesh.vertices[n == a ? p : n];
+      across += opposite.mark == at_both;
+      opposite.mark = counted;
       return;
     }
-    const std::uint32_t opposite = n == a ? p : n;
-    if (mark_b_[opposite] == look_) {
-      mark_b_[opposite] = 0;
-      ++across;
-    }
+    ++surviving;
+    if (common < 2) return;
+    for (const auto& [x, y] : far_edges_) coincide = coincide || (x == n && y == p) || (x == p && y == n);
   });
   if (surviving == 0) {
     topology_ = Block::last;
@@ -82,8 +82,8 @@ bool Legality::keeps_shape(std::uint32_t c, std::uint32_t other, Vec3d p) const 
   const CollapseMesh& mesh = state_.mesh;
   const std::uint32_t v1 = mesh.vertex(CollapseMesh::next(c)), v2 = mesh.vertex(CollapseMesh::previous(c));
   if (v1 == other || v2 == other) return true;
-  const Vec3d p0 = state_.vertices[mesh.vertex(c)].position;
-  const Vec3d p1 = state_.vertices[v1].position, p2 = state_.vertices[v2].position;
+  const Vec3d p0 = state_.mesh.vertices[mesh.vertex(c)].position;
+  const Vec3d p1 = state_.mesh.vertices[v1].position, p2 = state_.mesh.vertices[v2].position;
   const Vec3d before = cross(p1 - p0, p2 - p0), after = cross(p1 - p, p2 - p);
   const double before2 = length_squared(before), after2 = length_squared(after);
   const double size_before = longest_squared(p0, p1, p2), size_after = longest_squared(p, p1, p2);

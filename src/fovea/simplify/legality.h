@@ -16,11 +16,7 @@ enum class Block { none, topology, last };
 /// what they found there.
 class Legality {
  public:
-  explicit Legality(const CollapseState& state)
-      : state_(state),
-        mark_a_(state.vertices.size(), 0),
-        mark_b_(state.vertices.size(), 0),
-        count_(state.vertices.size(), 0) {}
+  explicit Legality(CollapseState& state) : state_(state) {}
 
   /// The link condition (Dey et al. 1999): the neighbours that a and b share are those across their
   /// common triangles, an inner edge does not join two boundaries, and no two triangles come to lie
@@ -41,10 +37,7 @@ class Legality {
   bool keeps_texture(std::uint32_t c, std::uint32_t other, std::size_t channel,
                      const ValueMerge& merge) const;
 
-  const CollapseState& state_;
-  std::vector<std::uint32_t> mark_a_, mark_b_;  // [#V], the look in which v was a neighbour of a, of b
-  std::vector<std::uint8_t> count_;             // [#V], triangles on the edge a–v or b–v, saturated
-  std::uint32_t look_ = 0;
+  CollapseState& state_;  // for the vertices' marks; nothing else changes
   Block topology_ = Block::none;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> far_edges_;
 };
