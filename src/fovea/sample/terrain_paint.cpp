@@ -1,0 +1,139 @@
+#include "fovea/sample/terrain_paint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/sample/noise.h"
+
+namespace fovea {
+
+namespace {
+
+const Vec3d kSun = normalized(Vec3d{-0.62, 0.48, 0.62});  // East, north, up.
+
+/// What the colour of a place depends on.
+struct Place {
+  Vec2d p;            ///< 0 … 1 from west to east and north to south.
+  double height = 0;  ///< Above the water, in widths of the map.
+  double steep = 0;   ///< 0 flat … 1 upright.
+  double north = 0;   ///< How much the slope looks north.
+  double flow = 0;    ///< 0 … 1.
+  double hollow = 0;  ///< Below (positive) or above its surroundings.
+  double lit = 1;     ///< Sunlight past the mountains and at its angle.
+};
+
+class Painter {
+ public:
+  Painter(const Landscape& land, std::uint64_t seed)
+      : land_(land),
+        seed_(seed),
+        light_(blur(cast_light(land.ground, kSun.x, kSun.y, kSun.z), 1)),
+        around_(blur(land.ground, land.ground.size() / 40)),
+        flow_(blur(land.flow, 1)) {}
+
+  Color operator()(double s, double t) const {
+    const Place at = look({s, 1 - t});
+    Color c = dry_land(at);
+    c = mix(water(at), c, smooth_step(-0.0012, 0.0012, at.height));
+    return grade(c, at);
+  }
+
+ private:
+  double noise(Vec2d p, double scale, int octaves, int which) const {
+    return fractal_noise(p * scale, octaves, seed_ + static_cast<std::uint64_t>(which));
+  }
+
+  Place look(Vec2d p) const {
+    Place at;
+    at.p = p;
+    const double step = 0.7 / land_.ground.size();
+    // The ground has finer relief than the map holds; it shows in the light only.
+    const auto height = [&](double x, double y) {
+      const double rough = std::clamp(land_.ground.read(x, y) * 4, 0.1, 1.0);
+      return land_.ground.read(x, y) + 0.0032 * rough * noise({x, y}, 70, 3, 71);
+    };
+    const double dx = (height(p.x + step, p.y) - height(p.x - step, p.y)) / (2 * step);
+    const double dy = (height(p.x, p.y + step) - height(p.x, p.y - step)) / (2 * step);
+    const Vec3d normal = normalized(Vec3d{-dx, dy, 1});  // East, north, up.
+    at.height = land_.ground.read(p.x, p.y) - land_.water;
+    at.steep = 1 - normal.z;
+    at.north = normal.y;
+    at.flow = clamp01(std::log1p(std::max(0.0, flow_.read(p.x, p.y))) / 6.5);
+    at.hollow = around_.read(p.x, p.y) - land_.ground.read(p.x, p.y);
+    const double angle = std::max(0.0, at.height < 0 ? kSun.z : dot(normal, kSun));
+    at.lit = angle * clamp01(light_.read(p.x, p.y));
+    return at;
+  }
+
+  Color rock(const Place& at) const {
+    const double strata = std::sin(at.height * 420 + 5 * noise(at.p, 9, 4, 72));
+    Color c = mix(rgb(0x6E655B), rgb(0x938676), clamp01(0.5 + 0.22 * strata + 0.7 * noise(at.p, 60, 4, 73)));
+    return mix(c, rgb(0x7C6A56), 0.5 * clamp01(noise(at.p, 14, 3, 74) + 0.3));
+  }
+
+  Color meadow(const Place& at) const {
+    const double dry = clamp01(0.45 + 0.8 * noise(at.p, 12, 5, 75) + 1.4 * at.height - 0.6 * at.flow);
+    Color c = mix(rgb(0x566B2E), rgb(0x9C9352), dry);
+    return c * (1 + 0.14 * noise(at.p, 170, 3, 76));
+  }
+
+  /// Single trees: round crowns with a lit and a dark side.
+  Color trees(const Place& at, Color ground, double density) const {
+    const Vec2d p = at.p * 190.0;
+    const Cell tree = cell_noise(p, seed_ + 77);
+    if ((tree.id & 1023) / 1023.0 > density) return ground * (1 - 0.25 * density);
+    const Cell shifted = cell_noise(p + Vec2d{-0.22, -0.22}, seed_ + 77);
+    const double tone = (tree.id >> 10 & 255) / 255.0;
+    const Color crown =
+        mix(rgb(0x1F3620), rgb(0x40572B), tone) * (0.75 + 0.8 * (shifted.nearest - tree.nearest + 0.2));
+    return mix(ground * 0.55, crown, smooth_step(0.62, 0.42, tree.nearest));
+  }
+
+  Color dry_land(const Place& at) const {
+    Color c = meadow(at);
+    const double wet = 0.55 + 0.9 * noise(at.p, 7, 5, 78) + 0.5 * at.flow + 12 * at.hollow;
+    const double wooded = clamp01(wet) * smooth_step(0.185, 0.13, at.height + 0.02 * noise(at.p, 40, 3, 79)) *
+                          smooth_step(0.30, 0.20, at.steep) * smooth_step(0.004, 0.012, at.height);
+    c = trees(at, c, 0.95 * wooded);
+    const double bare =
+        smooth_step(0.16, 0.30, at.steep + 0.10 * noise(at.p, 45, 4, 80) + 0.55 * (at.height - 0.15));
+    c = mix(c, rock(at), bare);
+    c = mix(c, rgb(0xA39B8C), 0.55 * smooth_step(0.62, 0.9, at.flow) * smooth_step(0.35, 0.2, at.steep));
+    const double snow_line = 0.215 + 0.035 * noise(at.p, 10, 5, 81) - 0.05 * at.north;
+    const double snow = smooth_step(snow_line, snow_line + 0.018, at.height + 0.4 * at.hollow) *
+                        smooth_step(0.52, 0.36, at.steep);
+    c = mix(c, rgb(0xEDF1F5), snow);
+    return mix(rgb(0xC2B48F), c, smooth_step(0.0015, 0.0055, at.height + 0.002 * noise(at.p, 90, 2, 82)));
+  }
+
+  Color water(const Place& at) const {
+    const double depth = smooth_step(0.0, -0.022, at.height);
+    const Color c = mix(rgb(0x4E8C86), rgb(0x123A52), depth);
+    return c * (1 + 0.05 * noise({at.p.x, at.p.y * 3}, 60, 3, 83));
+  }
+
+  /// Sun and sky, a little haze, all in the curve that the image is stored in.
+  Color grade(Color c, const Place& at) const {
+    const double open = clamp01(0.80 - 7.0 * at.hollow);
+    const Color sky = rgb(0x8FA4C4) * (0.62 * open), sun = rgb(0xFFF1DC) * 1.02;
+    const Color light = sky + sun * at.lit;
+    const Color lit{c.x * light.x, c.y * light.y, c.z * light.z};
+    return {clamp01(std::pow(lit.x, 0.92)), clamp01(std::pow(lit.y, 0.92)), clamp01(std::pow(lit.z, 0.92))};
+  }
+
+  const Landscape& land_;
+  std::uint64_t seed_;
+  HeightMap light_, around_, flow_;
+};
+
+}  // namespace
+
+Image8 paint_terrain(const Landscape& land, int size, std::uint64_t seed, const Context& context) {
+  Image8 image(size, size, 3, ColorEncoding::srgb);
+  const Painter painter(land, seed);
+  const auto extent = static_cast<double>(size);
+  paint(image, {0, 0, extent, extent}, 0, context, [&](double s, double t) { return painter(s, t); });
+  return image;
+}
+
+}  // namespace fovea
