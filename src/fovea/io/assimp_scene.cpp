@@ -324,6 +324,7 @@ Model convert_scene(const aiScene& scene, const std::filesystem::path& folder, c
   TextureLoader textures(model, folder, options, context);
   convert_materials(scene, model, textures, place, context);
   convert_animations(scene, model, converter.node_of_name(), place, context);
+  drop_textures_without_uvs(model);
   return model;
 }
 

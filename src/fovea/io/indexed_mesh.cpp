@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 #include <span>
 
 #include "fovea/base/error.h"
@@ -172,6 +176,35 @@ TriMesh weld_groups(IndexedMesh&& mesh, Context& context, const std::string& pla
   return result;
 }
 
+/// The texture coordinate sets that each part's triangles have; none for parts without triangles.
+std::vector<std::optional<std::set<int>>> uv_sets_of_parts(const TriMesh& mesh) {
+  std::vector<std::optional<std::set<int>>> sets(mesh.parts.size());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::uint32_t part = mesh.face_part[f];
+    if (sets[part]) continue;
+    sets[part].emplace();
+    for (const AttributeLayer& layer : mesh.layers) {
+      if (layer.semantic == Semantic::uv && layer.corner_value[3 * f].valid()) sets[part]->insert(layer.set);
+    }
+  }
+  return sets;
+}
+
+constexpr std::array kMaps = {&Material::base_color, &Material::metallic_roughness, &Material::normal,
+                              &Material::occlusion, &Material::emissive};
+
+Material without_textures(const Material& material, const std::set<int>& uv_sets) {
+  Material result = material;
+  for (const auto map : kMaps) {
+    if (result.*map && !uv_sets.contains((result.*map)->uv_set)) (result.*map).reset();
+  }
+  return result;
+}
+
+bool same_textures(const Material& a, const Material& b) {
+  return std::all_of(kMaps.begin(), kMaps.end(), [&](auto map) { return a.*map == b.*map; });
+}
+
 }  // namespace
 
 void repair_normals(SplitPart& part, Context& context, const std::string& place) {
@@ -207,6 +240,23 @@ Model model_of(TriMesh&& surface, const std::string& name) {
   model.scenes.push_back({name, {0}, {}});
   model.default_scene = 0;
   return model;
+}
+
+void drop_textures_without_uvs(Model& model) {
+  std::map<std::pair<int, std::set<int>>, int> copies;  // of a material, by the uv sets that it may use
+  for (Mesh& mesh : model.meshes) {
+    const auto sets = uv_sets_of_parts(mesh.surface);
+    for (std::size_t p = 0; p < sets.size(); ++p) {
+      int& material = mesh.surface.parts[p].material;
+      if (material < 0 || !sets[p]) continue;
+      Material bare = without_textures(model.materials[static_cast<std::size_t>(material)], *sets[p]);
+      const auto next = static_cast<int>(model.materials.size());
+      if (same_textures(bare, model.materials[static_cast<std::size_t>(material)])) continue;
+      const auto [known, is_new] = copies.try_emplace({material, *sets[p]}, next);
+      if (is_new) model.materials.push_back(std::move(bare));
+      material = known->second;
+    }
+  }
 }
 
 void check_element_count(std::uint64_t count, const char* what, const ReadOptions& options,

@@ -44,6 +44,10 @@ void repair_normals(SplitPart& part, Context& context, const std::string& place)
 /// A model with one mesh in one node in one scene.
 Model model_of(TriMesh&& surface, const std::string& name);
 
+/// Gives parts that lack the texture coordinates which their material's images need a copy of the
+/// material without those images: where to look them up is not defined.
+void drop_textures_without_uvs(Model& model);
+
 /// Throws Error(limit) with the option's name if one array has more than `options` allow.
 void check_element_count(std::uint64_t count, const char* what, const ReadOptions& options,
                          const std::string& place);

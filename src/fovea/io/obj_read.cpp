@@ -360,6 +360,7 @@ Model read_obj(std::span<const std::byte> bytes, const std::filesystem::path& fo
   model.textures = std::move(images.textures);
   model.samplers = std::move(images.samplers);
   model.images = std::move(images.images);
+  drop_textures_without_uvs(model);
   return model;
 }
 

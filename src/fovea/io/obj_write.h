@@ -12,7 +12,7 @@ namespace fovea {
 /// Encodes a model as Wavefront OBJ: the file itself, `stem`.mtl if there is a material, and the
 /// images that materials use.
 ///
-/// Every instance of every mesh of the scene is written with its world transform, in node order
+/// Every instance of every mesh of the scene is written with its world transform, mesh by mesh
 /// (rest pose; mirrored ones with their winding turned). Positions are shared, texture coordinates
 /// and normals have tables of their own, so that a seam cuts only what it must. Numbers are the
 /// shortest that read back as the same float. Texture coordinates are those of a material's base

@@ -402,6 +402,7 @@ Model read_ply(std::span<const std::byte> bytes, const std::filesystem::path& fo
   drop_vertex_uvs(mesh);
   Model model = model_of(weld(std::move(mesh), context, place), std::filesystem::path(place).stem().string());
   add_materials(model, header, folder, options, place, context);
+  drop_textures_without_uvs(model);
   return model;
 }
 

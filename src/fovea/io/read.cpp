@@ -11,6 +11,7 @@
 #include "fovea/io/assimp_read.h"
 #include "fovea/io/gltf_read.h"
 #include "fovea/io/obj_read.h"
+#include "fovea/io/off_read.h"
 #include "fovea/io/ply_read.h"
 #include "fovea/io/stl_read.h"
 #include "fovea/io/text_scan.h"
@@ -86,6 +87,7 @@ Model read_as(FileFormat format, std::span<const std::byte> bytes, const fs::pat
     case FileFormat::stl: return read_stl(bytes, place, options, context);
     case FileFormat::other: break;
   }
+  if (is_off(bytes)) return read_off(bytes, place, options, context);
   return read_assimp(bytes, path, options, context);
 }
 
