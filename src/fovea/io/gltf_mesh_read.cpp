@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "fovea/base/error.h"
+#include "fovea/io/gltf_json_write.h"
 #include "fovea/io/gltf_primitive_read.h"
 
 namespace fovea::gltf {
@@ -19,7 +20,8 @@ constexpr const char* kVertexOrderExtensions[] = {"CESIUM_primitive_outline", "E
 
 void drop_vertex_order(ReadState& state, Json& object, const JsonView& at) {
   for (const char* name : kVertexOrderExtensions) {
-    if (!remove_extension(object, name)) continue;
+    if (!find_extension(object, name)) continue;
+    erase_extension(object, name);
     state.context.report("extension-dropped",
                          fmt::format("{} numbers vertices of the file and was dropped", name), at.place());
   }
@@ -36,7 +38,7 @@ void check_variants(const ReadState& state, const JsonView& primitive) {
 std::string keep_primitive(ReadState& state, const JsonView& primitive) {
   check_variants(state, primitive);
   Json rest = without(primitive.raw(), {"attributes", "indices", "targets", "mode"});
-  remove_extension(rest, "KHR_draco_mesh_compression");
+  erase_extension(rest, "KHR_draco_mesh_compression");
   drop_vertex_order(state, rest, primitive);
   return state.keeper.keep(std::move(rest), primitive);
 }

@@ -47,11 +47,4 @@ Json without(const Json& object, std::initializer_list<const char*> members) {
   return rest;
 }
 
-bool remove_extension(Json& object, const char* name) {
-  const auto extensions = object.find("extensions");
-  if (extensions == object.end() || !extensions->is_object() || extensions->erase(name) == 0) return false;
-  if (extensions->empty()) object.erase("extensions");
-  return true;
-}
-
 }  // namespace fovea::gltf

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <string>
 
@@ -54,7 +55,5 @@ struct ReadState {
 
 /// A copy of `object` without some of its members.
 Json without(const Json& object, std::initializer_list<const char*> members);
-/// Removes an extension, and "extensions" with the last one. Returns whether it was there.
-bool remove_extension(Json& object, const char* name);
 
 }  // namespace fovea::gltf
