@@ -50,7 +50,8 @@ std::string flag_text(const Option& option, const std::string& default_text) {
 // "0..1, of the diagonal, default 0.5": what the flag itself does not show.
 std::string details(const Option& option, const std::string& default_text) {
   std::vector<std::string> parts;
-  if (!std::holds_alternative<Option::Choice>(option.value) && !option.range_text().empty()) {
+  const bool shown = option.is_flag() || std::holds_alternative<Option::Choice>(option.value);
+  if (!shown && !option.range_text().empty()) {
     parts.push_back(option.range_text());
   }
   if (!is_text(option) && !option.unit.empty()) parts.push_back(option.unit);

@@ -2,15 +2,15 @@
 
 #include <string>
 
+#include "fovea/io/read.h"
 #include "fovea/model/model.h"
 #include "fovea/simplify/simplify.h"
 
 namespace fovea::cli {
 
-/// The importance that `--importance SOURCE` names: a field file (.npy, .csv) or a vertex attribute of
-/// the model. Empty for an empty source. Throws Error(usage) if no mesh has the attribute, with the
-/// nearest that one has, or if the file's length fits neither the vertices nor the source vertices;
-/// Error of io/field_file.h for the file.
-Importance load_importance(const std::string& source, const Model& model);
+/// The importance that `--importance SOURCE` names: a file of numbers if there is one of that name or
+/// it ends in .npy, .csv or .txt, else a vertex attribute of the model. Throws what io/field_file.h
+/// throws, with the option or the file as place.
+Importance load_importance(const std::string& source, const Model& model, const ReadOptions& options);
 
 }  // namespace fovea::cli

@@ -24,7 +24,7 @@ class Sample : public Verb {
   void declare(Arguments& arguments) override {
     arguments.add({"NAME", "A name that --list shows.", &name_, false});
     arguments.add("Sample", {{"list", "List the samples instead of making one.", &list_, ""},
-                             {"detail", "Scales the number of triangles.", &detail_, "times", 0.001, 10000}});
+                             {"detail", "Scales the number of triangles.", &detail_, "times", 0.001, 1000}});
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
   }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "fovea/io/write.h"
 #include "report.h"
 #include "text.h"
 
@@ -119,23 +120,14 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
     throw Error(ErrorKind::usage, "standard output is not supported", "-o -",
                 "name a file: its extension picks the format");
   }
-  const fs::path path(output);
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    throw Error(ErrorKind::output, "is a folder", output, "name a file in it");
-  }
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, ignored)) {
-    throw Error(ErrorKind::output, "there is no such folder", folder.string(), "make it first");
-  }
-  if (force || !fs::exists(path, ignored)) return;
   for (const std::string& input : inputs) {
-    if (fs::equivalent(path, input, ignored)) {
+    std::error_code missing;
+    if (!force && fs::equivalent(output, input, missing)) {
       throw Error(ErrorKind::usage, "the output is an input", output,
                   "--force replaces the original; there is no way back");
     }
   }
-  throw Error(ErrorKind::usage, "the file exists already", output, "--force replaces it");
+  fovea::check_output(output, force);
 }
 
 void check_input(const std::string& input) {

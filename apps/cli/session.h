@@ -95,8 +95,8 @@ class Session {
 /// Largest resident memory of this process so far.
 std::uint64_t peak_memory_bytes();
 
-/// Checks an output path before any work is spent on it: Error(usage) for "-", for a path that is an
-/// input or exists already without `force`; Error(output) for a folder, or a place in none.
+/// Checks an output path before any work is spent on it: Error(usage) for none, for "-" and for a path
+/// that is an input without `force`, then all that io/write.h checks.
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
 /// An input path as given; Error(usage) for "-", Error(input) if it is missing or a folder.

@@ -58,7 +58,8 @@ class Simplify : public Verb {
     const Snapshot before = snapshot(model, measure_file(input_, model));
     Importance importance;
     if (!importance_.empty()) {
-      importance = session.phase("importance", [&] { return load_importance(importance_, model); });
+      importance =
+          session.phase("importance", [&] { return load_importance(importance_, model, read_options_); });
     }
     const SimplifyResult result =
         session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });

@@ -13,6 +13,11 @@
 #include <stdexcept>
 #include <thread>
 
+#include "fovea/base/context.h"
+#include "fovea/io/image_codec.h"
+#include "fovea/io/write.h"
+#include "support/meshes.h"
+
 namespace fovea::test {
 
 namespace fs = std::filesystem;
@@ -46,7 +51,7 @@ std::string read_text(const std::string& path) {
 }
 
 Running::Running(const std::vector<std::string>& arguments, const std::string& stdout_path)
-    : out_(stdout_path.empty() ? folder_ / "out" : stdout_path), err_(folder_ / "err") {
+    : out_(stdout_path.empty() ? folder_ / "out" : ""), err_(folder_ / "err") {
   std::vector<std::string> words{FOVEA_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -57,7 +62,8 @@ Running::Running(const std::vector<std::string>& arguments, const std::string& s
   posix_spawn_file_actions_init(&actions);
   constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kWrite, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (out_.empty() ? stdout_path : out_).c_str(),
+                                   kWrite, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kWrite, 0600);
   const int failed = posix_spawn(&process_, FOVEA_PROGRAM, &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -86,7 +92,7 @@ Outcome Running::wait() {
   waitpid(process_, &status, 0);
   process_ = -1;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-  return {code, read_text(out_), read_text(err_)};
+  return {code, out_.empty() ? "" : read_text(out_), read_text(err_)};
 }
 
 Outcome fovea(const std::vector<std::string>& arguments, const std::string& stdout_path) {
@@ -94,5 +100,21 @@ Outcome fovea(const std::vector<std::string>& arguments, const std::string& stdo
 }
 
 std::string square_obj() { return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"; }
+
+std::string write_grid(const Folder& folder, const std::string& name, int quads) {
+  Model model = model_of(wavy_grid(quads, quads, 0.1));
+  EncodedImage image;
+  image.name = "dots";
+  image.mime_type = "image/png";
+  image.bytes = encode_png(Image8(16, 8, 3, ColorEncoding::srgb));
+  model.images.push_back(image);
+  model.textures.push_back({0, -1, "", ""});
+  model.materials.assign(1, Material{});
+  model.materials[0].base_color = TextureRef{0, 0, {}};
+  for (Part& part : model.meshes[0].surface.parts) part.material = 0;
+  Context context;
+  write_model(model, folder / name, {}, context);
+  return folder / name;
+}
 
 }  // namespace fovea::test

@@ -53,7 +53,7 @@ class Running {
 
  private:
   Folder folder_;
-  std::string out_, err_;
+  std::string out_, err_;  // Empty if stdout goes elsewhere.
   pid_t process_ = -1;
 };
 
@@ -62,5 +62,9 @@ Outcome fovea(const std::vector<std::string>& arguments, const std::string& stdo
 
 /// A model of two triangles (a unit square) without textures, as OBJ text.
 std::string square_obj();
+
+/// Writes a wavy square of quads × quads × 2 triangles with normals, texture coordinates and a texture
+/// of 16 × 8 pixels, which is quicker than a sample. Returns its path.
+std::string write_grid(const Folder& folder, const std::string& name, int quads = 24);
 
 }  // namespace fovea::test

@@ -9,34 +9,39 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// One model for all tests here: making it takes longer than reading it.
+/// A folder with a model in it, and room for outputs.
 class Verbs : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = new Folder;
-    vase_ = *folder_ / "vase.glb";
-    made_ = fovea({"sample", "vase", "-o", vase_, "--detail", "0.1", "--json"});
-  }
-  static void TearDownTestSuite() { delete folder_; }
+  std::string out(const std::string& name) const { return folder_ / name; }
 
-  static std::string out(const std::string& name) { return *folder_ / name; }
-
-  static Folder* folder_;
-  static std::string vase_;
-  static Outcome made_;
+  Folder folder_;
+  std::string grid_ = write_grid(folder_, "grid.glb");
 };
-Folder* Verbs::folder_ = nullptr;
-std::string Verbs::vase_;
-Outcome Verbs::made_;
 
 TEST_F(Verbs, SampleMakesAModel) {
-  ASSERT_EQ(made_.code, 0) << made_.err;
-  const nlohmann::json json = made_.json();
-  EXPECT_EQ(json["outputs"][0]["path"], vase_);
+  const std::string vase = out("vase.glb");
+  const Outcome outcome = fovea({"sample", "vase", "-o", vase, "--detail", "0.1", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["outputs"][0]["path"], vase);
   EXPECT_EQ(json["outputs"][0]["format"], "glb");
-  EXPECT_EQ(json["outputs"][0]["bytes"], std::filesystem::file_size(vase_));
+  EXPECT_EQ(json["outputs"][0]["bytes"], std::filesystem::file_size(vase));
   EXPECT_GT(json["after"]["triangles"], 1000);
   EXPECT_GT(json["after"]["bytes"]["images"], 0);
+}
+
+// The whole way, as a new user goes it.
+TEST_F(Verbs, SampleThenInfoThenSimplify) {
+  const std::string arm = out("arm.glb"), small = out("small.glb");
+  ASSERT_EQ(fovea({"sample", "arm", "-o", arm, "--detail", "0.1"}).code, 0);
+  const nlohmann::json before = fovea({"info", arm, "--json"}).json();
+  EXPECT_EQ(before["skins"].size(), 1u);
+  EXPECT_EQ(before["meshes"][0]["skinned"], true);
+  ASSERT_EQ(fovea({"simplify", arm, "-o", small, "--ratio", "0.25"}).code, 0);
+  const nlohmann::json after = fovea({"info", small, "--json"}).json();
+  EXPECT_LE(after["totals"]["triangles"].get<int>(), before["totals"]["triangles"].get<int>() / 4 + 1);
+  EXPECT_EQ(after["animations"], before["animations"]);
+  EXPECT_EQ(after["images"], before["images"]);
 }
 
 TEST_F(Verbs, SampleListNamesWhatSampleMakes) {
@@ -59,13 +64,13 @@ TEST_F(Verbs, SampleWithoutANameOrWithoutOutput) {
 }
 
 TEST_F(Verbs, InfoJsonDescribesTheModel) {
-  const Outcome outcome = fovea({"info", vase_, "--json"});
+  const Outcome outcome = fovea({"info", grid_, "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
   ASSERT_TRUE(json.is_object()) << outcome.out;
   EXPECT_EQ(json["schema_version"], 1);
   EXPECT_EQ(json["tool"]["version"], FOVEA_VERSION);
-  EXPECT_EQ(json["inputs"][0]["path"], vase_);
+  EXPECT_EQ(json["inputs"][0]["path"], grid_);
   const nlohmann::json& mesh = json["meshes"][0];
   EXPECT_GT(mesh["triangles"], 0);
   EXPECT_GE(mesh["split_vertices"], mesh["vertices"]);
@@ -80,15 +85,15 @@ TEST_F(Verbs, InfoJsonDescribesTheModel) {
 }
 
 TEST_F(Verbs, InfoBytesAddUpToTheFile) {
-  const nlohmann::json bytes = fovea({"info", vase_, "--json"}).json()["totals"]["bytes"];
-  EXPECT_EQ(bytes["files"], std::filesystem::file_size(vase_));
+  const nlohmann::json bytes = fovea({"info", grid_, "--json"}).json()["totals"]["bytes"];
+  EXPECT_EQ(bytes["files"], std::filesystem::file_size(grid_));
   const auto sum = bytes["geometry"].get<std::uint64_t>() + bytes["images"].get<std::uint64_t>() +
                    bytes["animation"].get<std::uint64_t>() + bytes["other"].get<std::uint64_t>();
   EXPECT_EQ(sum, bytes["files"]);
 }
 
 TEST_F(Verbs, InfoTextNamesWhatIsInside) {
-  const Outcome outcome = fovea({"info", vase_});
+  const Outcome outcome = fovea({"info", grid_});
   EXPECT_EQ(outcome.code, 0);
   for (const char* word :
        {"triangles", "Meshes", "TEXCOORD_0", "Materials", "base color", "Images", "Bytes"}) {
@@ -97,7 +102,7 @@ TEST_F(Verbs, InfoTextNamesWhatIsInside) {
 }
 
 TEST_F(Verbs, InfoQuietStillGivesTheData) {
-  EXPECT_THAT(fovea({"info", vase_, "--quiet"}).out, HasSubstr("Meshes"));
+  EXPECT_THAT(fovea({"info", grid_, "--quiet"}).out, HasSubstr("Meshes"));
 }
 
 TEST_F(Verbs, InfoMeasuresGltfWithFilesBeside) {
@@ -129,7 +134,7 @@ TEST_F(Verbs, InfoMeasuresGltfWithFilesBeside) {
 }
 
 TEST_F(Verbs, SimplifyReportsBeforeAndAfter) {
-  const Outcome outcome = fovea({"simplify", vase_, "-o", out("tenth.glb"), "--ratio", "0.1", "--json"});
+  const Outcome outcome = fovea({"simplify", grid_, "-o", out("tenth.glb"), "--ratio", "0.1", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
   ASSERT_TRUE(json.is_object()) << outcome.out;
@@ -151,7 +156,7 @@ TEST_F(Verbs, SimplifyReportsBeforeAndAfter) {
 }
 
 TEST_F(Verbs, SimplifyTellsItInText) {
-  const Outcome outcome = fovea({"simplify", vase_, "-o", out("text.glb"), "--ratio", "0.5"});
+  const Outcome outcome = fovea({"simplify", grid_, "-o", out("text.glb"), "--ratio", "0.5"});
   EXPECT_EQ(outcome.code, 0);
   for (const char* word :
        {"before", "after", "triangles", "geometry", "images", "error", "stopped", "time"}) {
@@ -160,7 +165,7 @@ TEST_F(Verbs, SimplifyTellsItInText) {
 }
 
 TEST_F(Verbs, SimplifyQuietPrintsNothing) {
-  const Outcome outcome = fovea({"simplify", vase_, "-o", out("quiet.glb"), "--ratio", "0.5", "--quiet"});
+  const Outcome outcome = fovea({"simplify", grid_, "-o", out("quiet.glb"), "--ratio", "0.5", "--quiet"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_THAT(outcome.err, IsEmpty());
@@ -169,29 +174,29 @@ TEST_F(Verbs, SimplifyQuietPrintsNothing) {
 
 TEST_F(Verbs, SimplifyWritesTheSameBytesForAnyThreads) {
   EXPECT_EQ(
-      fovea({"simplify", vase_, "-o", out("one.glb"), "--ratio", "0.3", "--threads", "1", "--quiet"}).code,
+      fovea({"simplify", grid_, "-o", out("one.glb"), "--ratio", "0.3", "--threads", "1", "--quiet"}).code,
       0);
   EXPECT_EQ(
-      fovea({"simplify", vase_, "-o", out("four.glb"), "--ratio", "0.3", "--threads", "4", "--quiet"}).code,
+      fovea({"simplify", grid_, "-o", out("four.glb"), "--ratio", "0.3", "--threads", "4", "--quiet"}).code,
       0);
   EXPECT_TRUE(read_text(out("one.glb")) == read_text(out("four.glb")));
 }
 
 TEST_F(Verbs, SimplifyReplacesWithForce) {
-  folder_->write("old.glb", "old");
-  EXPECT_EQ(fovea({"simplify", vase_, "-o", out("old.glb"), "--ratio", "0.5", "--force", "--quiet"}).code, 0);
+  folder_.write("old.glb", "old");
+  EXPECT_EQ(fovea({"simplify", grid_, "-o", out("old.glb"), "--ratio", "0.5", "--force", "--quiet"}).code, 0);
   EXPECT_EQ(read_text(out("old.glb")).substr(0, 4), "glTF");
 }
 
 TEST_F(Verbs, SimplifyStopsAtAnErrorBound) {
-  const Outcome outcome = fovea({"simplify", vase_, "-o", out("bound.glb"), "--error", "0.001", "--json"});
+  const Outcome outcome = fovea({"simplify", grid_, "-o", out("bound.glb"), "--error", "0.001", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["result"]["stop"], "error");
   EXPECT_LE(outcome.json()["result"]["error_relative"], 0.001);
 }
 
 TEST_F(Verbs, SimplifySaysWhyItIsStuck) {
-  const std::string square = folder_->write("square.obj", square_obj());
+  const std::string square = folder_.write("square.obj", square_obj());
   const Outcome outcome =
       fovea({"simplify", square, "-o", out("stuck.glb"), "--triangles", "1", "--lock-boundary"});
   EXPECT_EQ(outcome.code, 8);
@@ -202,7 +207,7 @@ TEST_F(Verbs, SimplifySaysWhyItIsStuck) {
 }
 
 TEST_F(Verbs, SimplifyAllowsAMiss) {
-  const std::string square = folder_->write("square.obj", square_obj());
+  const std::string square = folder_.write("square.obj", square_obj());
   const Outcome outcome = fovea({"simplify", square, "-o", out("missed.glb"), "--triangles", "1",
                                  "--lock-boundary", "--allow-miss", "--json"});
   EXPECT_EQ(outcome.code, 0);
@@ -213,7 +218,7 @@ TEST_F(Verbs, SimplifyAllowsAMiss) {
 }
 
 TEST_F(Verbs, VerboseTellsPhases) {
-  const Outcome outcome = fovea({"info", vase_, "-v"});
+  const Outcome outcome = fovea({"info", grid_, "-v"});
   EXPECT_THAT(outcome.err, HasSubstr("fovea: read ..."));
   EXPECT_THAT(outcome.err, HasSubstr("peak memory"));
 }
