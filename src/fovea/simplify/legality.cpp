@@ -24,8 +24,8 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t at_a = mesh.new_mark(), at_b = at_a + 1, at_both = at_a + 2, counted = at_a + 3;
   topology_ = Block::none;
   far_edges_.clear();
-  std::size_t surviving = 0, common = 0, across = 0;
-  bool boundary_a = false, boundary_b = false, coincide = false;
+  std::size_t surviving = 0, common = 0, across = 0, coincident = 0;
+  bool boundary_a = false, boundary_b = false;
 
   mesh.for_ring(a, [&](std::uint32_t c) {
     for (const std::uint32_t w :
@@ -68,11 +68,11 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
     }
     ++surviving;
     if (common < 2) return;
-    for (const auto& [x, y] : far_edges_) coincide = coincide || (x == n && y == p) || (x == p && y == n);
+    for (const auto& [x, y] : far_edges_) coincident += (x == n && y == p) || (x == p && y == n);
   });
-  if (surviving == 0) {
+  if (surviving <= 2 * coincident) {
     topology_ = Block::last;
-  } else if (common != across || coincide || (faces_on_edge >= 2 && boundary_a && boundary_b)) {
+  } else if (common != across || coincident > 0 || (faces_on_edge >= 2 && boundary_a && boundary_b)) {
     topology_ = Block::topology;
   }
   return topology_ == Block::none;

@@ -1,0 +1,93 @@
+#include "fovea/simplify/collapse_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "support/meshes.h"
+
+namespace fovea {
+namespace {
+
+CollapseMesh make(const TriMesh& mesh) {
+  CollapseMesh out;
+  out.vertices.resize(mesh.vertex_count());
+  for (const auto& t : mesh.triangles) {
+    CollapseFace& f = out.faces.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) f.vertex[k] = t[k].value;
+  }
+  out.link();
+  return out;
+}
+
+TEST(CollapseMesh, RingsHoldEveryCornerOnce) {
+  for (const auto& [name, source] : test::all_families()) {
+    const CollapseMesh mesh = make(source);
+    std::size_t corners = 0;
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+      std::set<std::uint32_t> seen;
+      mesh.for_ring(v, [&](std::uint32_t c) {
+        EXPECT_EQ(mesh.vertex(c), v) << name;
+        EXPECT_TRUE(seen.insert(c).second) << name;
+      });
+      corners += seen.size();
+    }
+    EXPECT_EQ(corners, 3 * mesh.faces.size()) << name;
+  }
+}
+
+TEST(CollapseMesh, EveryCornerKnowsTheEdgeToItsNext) {
+  for (const auto& [name, source] : test::all_families()) {
+    const CollapseMesh mesh = make(source);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {
+      const std::pair<std::uint32_t, std::uint32_t> ends =
+          std::minmax({mesh.vertex(c), mesh.vertex(CollapseMesh::next(c))});
+      pairs.insert(ends);
+      const auto [v, w] = mesh.edges[mesh.edge(c)];
+      EXPECT_EQ(std::pair(v, w), std::pair(ends.first, ends.second)) << name;
+    }
+    EXPECT_EQ(mesh.edges.size(), pairs.size()) << name;
+  }
+}
+
+TEST(CollapseMesh, UnlinkingEmptiesARing) {
+  CollapseMesh mesh = make(test::single_triangle());
+  mesh.unlink_corner(0);
+  EXPECT_EQ(mesh.vertices[mesh.vertex(0)].first_corner, kInvalid);
+  CollapseMesh fan = make(test::tetrahedron());
+  std::vector<std::uint32_t> ring;
+  fan.for_ring(0, [&](std::uint32_t c) { ring.push_back(c); });
+  ASSERT_EQ(ring.size(), 3u);
+  fan.unlink_corner(ring[1]);
+  std::size_t left = 0;
+  fan.for_ring(0, [&](std::uint32_t c) {
+    EXPECT_NE(c, ring[1]);
+    ++left;
+  });
+  EXPECT_EQ(left, 2u);
+}
+
+TEST(CollapseMesh, CountsFacesOnEdges) {
+  const CollapseMesh mesh = make(test::non_manifold_edge());
+  const auto count = count_edge_faces(mesh);
+  EXPECT_EQ(std::count(count.begin(), count.end(), 3), 1);
+  EXPECT_EQ(std::count(count.begin(), count.end(), 1), 6);
+}
+
+TEST(CollapseMesh, FindsComponents) {
+  const FaceComponents two = find_components(make(test::tetrahedra(3)));
+  ASSERT_EQ(two.count(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(two.first[i + 1] - two.first[i], 4u);
+  EXPECT_EQ(find_components(make(test::bow_tie())).count(), 1u);
+  EXPECT_EQ(find_components(make(test::empty_mesh())).count(), 0u);
+}
+
+TEST(CollapseMesh, MarksNeverRepeat) {
+  CollapseMesh mesh = make(test::tetrahedron());
+  const std::uint32_t first = mesh.new_mark(), second = mesh.new_mark();
+  EXPECT_GE(second, first + 4);
+}
+
+}  // namespace
+}  // namespace fovea
