@@ -1,11 +1,14 @@
 // Speed and memory of fovea::simplify against the simplifiers of other libraries, as Markdown.
+// speed_bench [--quick | --large] [MODEL-NAME...]
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "fovea/base/error.h"
 #include "fovea/simplify/simplify.h"
@@ -19,6 +22,7 @@ namespace {
 struct Settings {
   int repeats = 3;
   bool large = false;
+  std::vector<std::string> only;  ///< Names of subjects; all if empty.
 };
 
 /// One row of the table.
@@ -116,9 +120,15 @@ void print_row(const Case& row) {
   std::fflush(stdout);
 }
 
+bool wanted(const Settings& settings, const Subject& subject) {
+  return settings.only.empty() ||
+         std::find(settings.only.begin(), settings.only.end(), subject.name) != settings.only.end();
+}
+
 void print_table(const Settings& settings) {
   print_head();
   for (const Subject& subject : speed_subjects()) {
+    if (!wanted(settings, subject)) continue;
     for (const bool attributes : {false, true}) {
       for (const double target : {0.5, 0.1, 0.02}) {
         print_row({subject, target, attributes, true, settings.repeats});
@@ -142,7 +152,7 @@ Settings parse(int count, char** words) {
     } else if (std::strcmp(words[i], "--quick") == 0) {
       settings.repeats = 1;
     } else {
-      throw Error(ErrorKind::usage, fmt::format("unknown option {}", words[i]), {}, "use --large or --quick");
+      settings.only.emplace_back(words[i]);
     }
   }
   return settings;
