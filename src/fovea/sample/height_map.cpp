@@ -39,22 +39,40 @@ struct Bilinear {
   }
 };
 
-/// Takes ground away in a disc, most in its middle, so that no pits are dug.
-void dig(HeightMap& map, int x, int y, double amount) {
-  constexpr int kRadius = 3;
-  constexpr double kTotal = 28.2;  // Sum of the weights below.
-  for (int j = -kRadius; j <= kRadius; ++j) {
-    for (int i = -kRadius; i <= kRadius; ++i) {
-      const double weight = kRadius - std::sqrt(static_cast<double>(i * i + j * j));
-      if (weight <= 0) continue;
-      map.at(std::clamp(x + i, 0, map.size() - 1), std::clamp(y + j, 0, map.size() - 1)) -=
-          amount * weight / kTotal;
+/// Shares of the grid points around a place in what a drop takes away, most in the middle.
+class Brush {
+ public:
+  static constexpr int kRadius = 3;
+
+  Brush() {
+    double total = 0;
+    for_each([&](int i, int j, double& share) {
+      share = std::max(0.0, kRadius - std::sqrt(static_cast<double>(i * i + j * j)));
+      total += share;
+    });
+    for_each([&](int, int, double& share) { share /= total; });
+  }
+
+  void dig(HeightMap& map, int x, int y, double amount) {
+    for_each([&](int i, int j, double share) {
+      map.at(std::clamp(x + i, 0, map.size() - 1), std::clamp(y + j, 0, map.size() - 1)) -= amount * share;
+    });
+  }
+
+ private:
+  template <class F>
+  void for_each(F&& f) {
+    std::size_t k = 0;
+    for (int j = -kRadius; j <= kRadius; ++j) {
+      for (int i = -kRadius; i <= kRadius; ++i) f(i, j, shares_[k++]);
     }
   }
-}
+
+  std::array<double, (2 * kRadius + 1) * (2 * kRadius + 1)> shares_{};
+};
 
 /// One drop from its place until it leaves the map, dries up or stands still.
-void run_drop(HeightMap& map, HeightMap& flow, double x, double y) {
+void run_drop(HeightMap& map, HeightMap& flow, Brush& brush, double x, double y) {
   constexpr double kInertia = 0.08, kCapacity = 5, kDrop = 0.3, kDig = 0.28, kDry = 0.015, kGravity = 4;
   constexpr int kSteps = 48;
   double dx = 0, dy = 0, speed = 1, water = 1, load = 0;
@@ -79,7 +97,7 @@ void run_drop(HeightMap& map, HeightMap& flow, double x, double y) {
     } else {
       const double amount = std::min((capacity - load) * kDig, -rise);
       load += amount;
-      dig(map, here.x, here.y, amount);
+      brush.dig(map, here.x, here.y, amount);
     }
     flow.at(here.x, here.y) += water;
     speed = std::sqrt(std::max(0.0, speed * speed - rise * kGravity));
@@ -105,6 +123,12 @@ double HeightMap::read(double x, double y) const {
   return sum;
 }
 
+double HeightMap::read_linear(double x, double y) const {
+  const double last = size_ - 1.000001;  // The point beyond is read, if with no weight.
+  return Bilinear(std::clamp(x * (size_ - 1), 0.0, last), std::clamp(y * (size_ - 1), 0.0, last))
+      .height(*this);
+}
+
 HeightMap make_mountains(int size, std::uint64_t seed) {
   HeightMap map(size);
   for (int y = 0; y < size; ++y) {
@@ -117,7 +141,7 @@ HeightMap make_mountains(int size, std::uint64_t seed) {
       const double high = smooth_step(0.05, 1.15, valley);
       const double ridges = ridged_noise(q * 3.1, 8, seed + 3);
       const double hills = 0.5 + 0.5 * fractal_noise(q * 4.5, 6, seed + 4);
-      map.at(x, y) = 0.05 + 0.11 * hills + high * (0.10 + 0.80 * ridges * (0.55 + 0.45 * hills));
+      map.at(x, y) = 0.05 + 0.11 * hills + high * (0.08 + 0.95 * ridges * (0.55 + 0.45 * hills));
     }
   }
   return map;
@@ -126,9 +150,10 @@ HeightMap make_mountains(int size, std::uint64_t seed) {
 HeightMap erode(HeightMap& map, int drops, std::uint64_t seed) {
   HeightMap flow(map.size());
   Random random(seed);
+  Brush brush;
   for (int i = 0; i < drops; ++i) {
     const double x = random.uniform(0, map.size() - 1), y = random.uniform(0, map.size() - 1);
-    run_drop(map, flow, x, y);
+    run_drop(map, flow, brush, x, y);
   }
   return flow;
 }

@@ -15,6 +15,8 @@ class HeightMap {
   double at(int x, int y) const { return heights_[index(x, y)]; }
   /// Bicubic (Catmull-Rom), clamped to the square.
   double read(double x, double y) const;
+  /// Bilinear: for what is smooth already.
+  double read_linear(double x, double y) const;
 
  private:
   std::size_t index(int x, int y) const {

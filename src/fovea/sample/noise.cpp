@@ -1,19 +1,21 @@
 #include "fovea/sample/noise.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "fovea/base/random.h"
 
 namespace fovea {
 
 namespace {
 
+/// Random bits of a lattice point: a multiplicative mix, as seeds and coordinates are small.
 std::uint32_t hash(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
-  const std::uint64_t key = static_cast<std::uint64_t>(x) * 0x8DA6B343u +
-                            static_cast<std::uint64_t>(y) * 0xD8163841u +
-                            static_cast<std::uint64_t>(z) * 0xCB1AB31Fu;
-  return static_cast<std::uint32_t>(Random(seed ^ (key << 16 | key >> 48)).next() >> 32);
+  std::uint32_t h =
+      static_cast<std::uint32_t>(x) * 0x8DA6B343u ^ static_cast<std::uint32_t>(y) * 0xD8163841u ^
+      static_cast<std::uint32_t>(z) * 0xCB1AB31Fu ^ static_cast<std::uint32_t>(seed) * 0x9E3779B1u;
+  h = (h ^ h >> 15) * 0x2C1B3C6Du;
+  h = (h ^ h >> 12) * 0x297A2D39u;
+  return h ^ h >> 15;
 }
 
 double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
@@ -23,15 +25,15 @@ double slope(std::uint32_t h, double x, double y) {
   constexpr double kHalf = 0.70710678118654752;
   constexpr std::array<Vec2d, 8> kDirections{
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {kHalf, kHalf}, {-kHalf, kHalf}, {kHalf, -kHalf}, {-kHalf, -kHalf}}};
-  const Vec2d g = kDirections[h & 7];
+  const Vec2d g = kDirections[h >> 29];
   return g.x * x + g.y * y;
 }
 
 double slope(std::uint32_t h, double x, double y, double z) {
   // The twelve directions to the edges of a cube, four of them twice.
-  const double u = (h & 15) < 8 ? x : y;
-  const double v = (h & 15) < 4 ? y : ((h & 15) == 12 || (h & 15) == 14 ? x : z);
-  return ((h & 1) ? -u : u) + ((h & 2) ? -v : v);
+  const double u = (h >> 28) < 8 ? x : y;
+  const double v = (h >> 28) < 4 ? y : ((h >> 28) == 12 || (h >> 28) == 14 ? x : z);
+  return ((h >> 28 & 1) ? -u : u) + ((h >> 28 & 2) ? -v : v);
 }
 
 /// Each octave has a seed of its own, so that crests do not pile up at the origin.

@@ -52,7 +52,9 @@ Model make_sample(const std::string& name, double detail, Context& context) {
                 fmt::format("allowed: {}..{}", kLeastDetail, kMostDetail));
   }
   for (const Entry& entry : kEntries) {
-    if (name == entry.name) return entry.make(detail, context);
+    if (name != entry.name) continue;
+    context.advance_or_throw("sample", 0);
+    return entry.make(detail, context);
   }
   unknown_name(name);
 }

@@ -57,7 +57,7 @@ double swelling(Vec3d d, const std::vector<Vec3d>& bumps) {
     const double angle = std::acos(std::min(1.0, std::max(-1.0, dot(d, b)))) / kWidth;
     sum += std::exp(-angle * angle);
   }
-  return kHeight * sum * smooth_step(-0.72, -0.50, d.x) - 0;
+  return kHeight * sum * smooth_step(-0.72, -0.50, d.x);
 }
 
 void add_bumps(SplitPart& part, Vec3d center, std::uint64_t seed) {

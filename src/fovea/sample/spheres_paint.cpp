@@ -43,6 +43,7 @@ Color gas_giant(Vec3d d) {
   Color c = scale_color(kBands, band);
   c = mix(c, rgb(0x9C7A62), 0.6 * smooth_step(0.72, 0.98, std::abs(d.y)));
 
+  if (around_storm == 0) return c;
   const double eye = fractal_noise(Vec3d{oval * 7 + swirl, east * 6, north * 6}, 3, 53);
   const Color red = mix(rgb(0xB4492B), rgb(0xD98B5F), clamp01(0.45 + 0.5 * eye + 0.25 * std::sin(oval * 16)));
   c = mix(c, rgb(0xF4EAD6), 0.75 * smooth_step(1.35, 1.12, oval));
@@ -62,8 +63,9 @@ Color earth(Vec3d d) {
   const Vec3d warp{fractal_noise(d * 2.0, 3, 60), fractal_noise(d * 2.0, 3, 61), 0};
   const double height = fractal_noise(d * 1.7 + warp * 0.45, 8, 62) * 1.25 - 0.02;
   const double cold = smooth_step(0.66, 0.92, std::abs(d.y) + 0.10 * fractal_noise(d * 5.0, 4, 64));
-  const Color sea = mix(rgb(0x0E2A52), rgb(0x2F86A6), smooth_step(-0.22, 0.0, height));
-  Color c = mix(sea, land(d, height, cold), smooth_step(-0.006, 0.006, height));
+  constexpr double kShore = 0.006;
+  Color c = mix(rgb(0x0E2A52), rgb(0x2F86A6), smooth_step(-0.22, 0.0, height));
+  if (height > -kShore) c = mix(c, land(d, height, cold), smooth_step(-kShore, kShore, height));
   c = mix(c, rgb(0xF2F5F8), smooth_step(0.45, 0.75, cold));
 
   const Vec3d wind = Vec3d{d.x * 2.6, d.y * 4.5, d.z * 2.6} + warp * 1.4;

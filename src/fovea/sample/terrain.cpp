@@ -9,8 +9,8 @@ namespace fovea {
 
 namespace {
 
-constexpr int kMapSize = 513, kTextureSize = 1024, kDrops = 160'000;
-constexpr double kWidth = 10, kRelief = 0.34;  ///< Height 1 of the map in widths.
+constexpr int kMapSize = 513, kTextureSize = 1024, kDrops = 100'000;
+constexpr double kWidth = 10, kRelief = 0.32;  ///< Height 1 of the map in widths.
 constexpr double kWater = 0.115;
 
 /// Heights in widths of the map.

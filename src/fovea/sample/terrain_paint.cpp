@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/base/parallel.h"
 #include "fovea/sample/noise.h"
 
 namespace fovea {
@@ -24,18 +25,19 @@ struct Place {
 
 class Painter {
  public:
-  Painter(const Landscape& land, std::uint64_t seed)
+  Painter(const Landscape& land, int size, std::uint64_t seed, const Context& context)
       : land_(land),
         seed_(seed),
+        relief_(make_relief(size + 1, context)),
         light_(blur(cast_light(land.ground, kSun.x, kSun.y, kSun.z), 1)),
         around_(blur(land.ground, land.ground.size() / 40)),
         flow_(blur(land.flow, 1)) {}
 
   Color operator()(double s, double t) const {
     const Place at = look({s, 1 - t});
-    Color c = dry_land(at);
-    c = mix(water(at), c, smooth_step(-0.0012, 0.0012, at.height));
-    return grade(c, at);
+    constexpr double kShore = 0.0012;
+    if (at.height < -kShore) return grade(water(at), at);
+    return grade(mix(water(at), dry_land(at), smooth_step(-kShore, kShore, at.height)), at);
   }
 
  private:
@@ -43,25 +45,40 @@ class Painter {
     return fractal_noise(p * scale, octaves, seed_ + static_cast<std::uint64_t>(which));
   }
 
+  /// The ground at the texels' corners, with finer relief than the map holds: it shows in the light only.
+  HeightMap make_relief(int size, const Context& context) const {
+    HeightMap relief(size);
+    parallel_for(context, static_cast<std::size_t>(size), 8, [&](std::size_t begin, std::size_t end) {
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+        for (int x = 0; x < size; ++x) {
+          const Vec2d p{static_cast<double>(x) / (size - 1), static_cast<double>(y) / (size - 1)};
+          const double ground = land_.ground.read(p.x, p.y);
+          const double rough = 0.0032 * std::clamp(ground * 4, 0.1, 1.0);
+          relief.at(x, y) = ground + rough * noise(p, 70, 3, 71);
+        }
+      }
+    });
+    return relief;
+  }
+
   Place look(Vec2d p) const {
     Place at;
     at.p = p;
-    const double step = 0.7 / land_.ground.size();
-    // The ground has finer relief than the map holds; it shows in the light only.
-    const auto height = [&](double x, double y) {
-      const double rough = std::clamp(land_.ground.read(x, y) * 4, 0.1, 1.0);
-      return land_.ground.read(x, y) + 0.0032 * rough * noise({x, y}, 70, 3, 71);
-    };
-    const double dx = (height(p.x + step, p.y) - height(p.x - step, p.y)) / (2 * step);
-    const double dy = (height(p.x, p.y + step) - height(p.x, p.y - step)) / (2 * step);
+    const double ground = land_.ground.read(p.x, p.y);
+    const int cells = relief_.size() - 1;
+    const int x = std::min(static_cast<int>(p.x * cells), cells - 1);
+    const int y = std::min(static_cast<int>(p.y * cells), cells - 1);
+    const double a = relief_.at(x, y), b = relief_.at(x + 1, y), c = relief_.at(x, y + 1),
+                 d = relief_.at(x + 1, y + 1);
+    const double dx = (b + d - a - c) * 0.5 * cells, dy = (c + d - a - b) * 0.5 * cells;
     const Vec3d normal = normalized(Vec3d{-dx, dy, 1});  // East, north, up.
-    at.height = land_.ground.read(p.x, p.y) - land_.water;
+    at.height = ground - land_.water;
     at.steep = 1 - normal.z;
     at.north = normal.y;
-    at.flow = clamp01(std::log1p(std::max(0.0, flow_.read(p.x, p.y))) / 6.5);
-    at.hollow = around_.read(p.x, p.y) - land_.ground.read(p.x, p.y);
+    at.flow = clamp01(std::log1p(std::max(0.0, flow_.read_linear(p.x, p.y))) / 6.5);
+    at.hollow = around_.read_linear(p.x, p.y) - ground;
     const double angle = std::max(0.0, at.height < 0 ? kSun.z : dot(normal, kSun));
-    at.lit = angle * clamp01(light_.read(p.x, p.y));
+    at.lit = angle * clamp01(light_.read_linear(p.x, p.y));
     return at;
   }
 
@@ -91,15 +108,15 @@ class Painter {
 
   Color dry_land(const Place& at) const {
     Color c = meadow(at);
-    const double wet = 0.55 + 0.9 * noise(at.p, 7, 5, 78) + 0.5 * at.flow + 12 * at.hollow;
+    const double wet = 0.30 + 1.2 * noise(at.p, 6, 5, 78) + 0.5 * at.flow + 12 * at.hollow;
     const double wooded = clamp01(wet) * smooth_step(0.185, 0.13, at.height + 0.02 * noise(at.p, 40, 3, 79)) *
-                          smooth_step(0.30, 0.20, at.steep) * smooth_step(0.004, 0.012, at.height);
-    c = trees(at, c, 0.95 * wooded);
+                          smooth_step(0.26, 0.17, at.steep) * smooth_step(0.004, 0.012, at.height);
+    if (wooded > 0) c = trees(at, c, 0.95 * wooded);
     const double bare =
-        smooth_step(0.16, 0.30, at.steep + 0.10 * noise(at.p, 45, 4, 80) + 0.55 * (at.height - 0.15));
-    c = mix(c, rock(at), bare);
+        smooth_step(0.12, 0.24, at.steep + 0.10 * noise(at.p, 45, 4, 80) + 0.55 * (at.height - 0.15));
+    if (bare > 0) c = mix(c, rock(at), bare);
     c = mix(c, rgb(0xA39B8C), 0.55 * smooth_step(0.62, 0.9, at.flow) * smooth_step(0.35, 0.2, at.steep));
-    const double snow_line = 0.215 + 0.035 * noise(at.p, 10, 5, 81) - 0.05 * at.north;
+    const double snow_line = 0.165 + 0.035 * noise(at.p, 10, 5, 81) - 0.05 * at.north;
     const double snow = smooth_step(snow_line, snow_line + 0.018, at.height + 0.4 * at.hollow) *
                         smooth_step(0.52, 0.36, at.steep);
     c = mix(c, rgb(0xEDF1F5), snow);
@@ -107,7 +124,7 @@ class Painter {
   }
 
   Color water(const Place& at) const {
-    const double depth = smooth_step(0.0, -0.022, at.height);
+    const double depth = smooth_step(0.0, -0.012, at.height);
     const Color c = mix(rgb(0x4E8C86), rgb(0x123A52), depth);
     return c * (1 + 0.05 * noise({at.p.x, at.p.y * 3}, 60, 3, 83));
   }
@@ -115,7 +132,7 @@ class Painter {
   /// Sun and sky, a little haze, all in the curve that the image is stored in.
   Color grade(Color c, const Place& at) const {
     const double open = clamp01(0.80 - 7.0 * at.hollow);
-    const Color sky = rgb(0x8FA4C4) * (0.62 * open), sun = rgb(0xFFF1DC) * 1.02;
+    const Color sky = rgb(0x8FA4C4) * (0.78 * open), sun = rgb(0xFFF1DC) * 0.95;
     const Color light = sky + sun * at.lit;
     const Color lit{c.x * light.x, c.y * light.y, c.z * light.z};
     return {clamp01(std::pow(lit.x, 0.92)), clamp01(std::pow(lit.y, 0.92)), clamp01(std::pow(lit.z, 0.92))};
@@ -123,14 +140,14 @@ class Painter {
 
   const Landscape& land_;
   std::uint64_t seed_;
-  HeightMap light_, around_, flow_;
+  HeightMap relief_, light_, around_, flow_;
 };
 
 }  // namespace
 
 Image8 paint_terrain(const Landscape& land, int size, std::uint64_t seed, const Context& context) {
   Image8 image(size, size, 3, ColorEncoding::srgb);
-  const Painter painter(land, seed);
+  const Painter painter(land, size, seed, context);
   const auto extent = static_cast<double>(size);
   paint(image, {0, 0, extent, extent}, 0, context, [&](double s, double t) { return painter(s, t); });
   return image;
