@@ -16,8 +16,10 @@ namespace fovea {
 
 namespace {
 
+/// After empty lines and comments.
 std::string_view first_word(std::span<const std::byte> bytes) {
-  TextScanner scan(bytes.first(std::min<std::size_t>(bytes.size(), 64)));
+  TextScanner scan(bytes.first(std::min<std::size_t>(bytes.size(), 4096)));
+  while (!scan.at_end() && scan.line_done()) scan.next_line();
   return scan.word();
 }
 

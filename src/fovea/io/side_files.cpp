@@ -82,6 +82,9 @@ int TextureLoader::load(const std::string& name, const std::string& place) {
     context_.report("missing-image", fmt::format("image \"{}\" is not in the model's folder", name), place);
     return -1;
   }
+  // The same file may go by several names.
+  if (const auto known = image_of_name_.find(file->string()); known != image_of_name_.end())
+    return known->second;
   const auto bytes = read_file(*file, options_.max_file_bytes);
   EncodedImage image;
   image.name = file->stem().string();
@@ -90,7 +93,7 @@ int TextureLoader::load(const std::string& name, const std::string& place) {
       fs::relative(*file, fs::canonical(folder_.empty() ? "." : folder_, error), error).generic_string();
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   image.bytes.assign(data, data + bytes.size());
-  return add(std::move(image), place);
+  return image_of_name_[file->string()] = add(std::move(image), place);
 }
 
 int TextureLoader::add(EncodedImage image, const std::string& place) {

@@ -1,5 +1,7 @@
 #include "fovea/io/triangulate.h"
 
+#include <algorithm>
+
 namespace fovea {
 
 namespace {
@@ -47,10 +49,15 @@ bool Triangulator::project(std::span<const Vec3f> polygon) {
   return true;
 }
 
-bool Triangulator::is_convex() const {
-  const std::size_t n = points_.size();
+/// A corner that is there twice would hide a turn: it counts once.
+bool Triangulator::is_convex() {
+  distinct_.clear();
+  for (const Vec2d& p : points_) {
+    if (distinct_.empty() || p != distinct_.back()) distinct_.push_back(p);
+  }
+  const std::size_t n = distinct_.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (turn(points_[i], points_[(i + 1) % n], points_[(i + 2) % n]) < 0) return false;
+    if (turn(distinct_[i], distinct_[(i + 1) % n], distinct_[(i + 2) % n]) < 0) return false;
   }
   return true;
 }
@@ -64,36 +71,44 @@ void Triangulator::cut_quad() {
       return;
     }
   }
+  fan(4);
 }
 
 void Triangulator::cut_ears() {
   left_.clear();
   for (std::uint32_t i = 0; i < points_.size(); ++i) left_.push_back(i);
-  std::size_t at = 0, tries = 0;
+  std::size_t at = 0;
   while (left_.size() > 3) {
     const std::size_t n = left_.size();
-    at %= n;
-    // Nothing is an ear of a polygon that crosses itself: cut anywhere rather than give up.
-    if (!is_ear(at) && tries < n) {
-      ++at;
-      ++tries;
-      continue;
-    }
+    at = find_ear(at % n);
     triangles_.push_back({left_[(at + n - 1) % n], left_[at], left_[(at + 1) % n]});
     left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
-    tries = 0;
   }
   triangles_.push_back({left_[0], left_[1], left_[2]});
 }
 
-bool Triangulator::is_ear(std::size_t at) const {
+/// The next corner that can be cut off without harm; else one that touches others at its rim or is
+/// flat; else, of a polygon that crosses itself, any.
+std::size_t Triangulator::find_ear(std::size_t from) const {
+  const std::size_t n = left_.size();
+  for (const bool strict : {true, false}) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is_ear((from + i) % n, strict)) return (from + i) % n;
+    }
+  }
+  return from;
+}
+
+bool Triangulator::is_ear(std::size_t at, bool strict) const {
   const std::size_t n = left_.size();
   const Vec2d a = points_[left_[(at + n - 1) % n]], b = points_[left_[at]], c = points_[left_[(at + 1) % n]];
-  if (turn(a, b, c) <= 0) return false;
+  const double area = turn(a, b, c);
+  if (area < 0 || (strict && area == 0)) return false;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2d p = points_[left_[i]];
     if (p == a || p == b || p == c) continue;
-    if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+    const double nearest = std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)});
+    if (nearest > 0 || (strict && nearest == 0)) return false;
   }
   return true;
 }

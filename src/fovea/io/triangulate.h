@@ -26,13 +26,15 @@ class Triangulator {
  private:
   void fan(std::size_t count);
   bool project(std::span<const Vec3f> polygon);
-  bool is_convex() const;
+  bool is_convex();
   void cut_quad();
   void cut_ears();
-  bool is_ear(std::size_t at) const;
+  std::size_t find_ear(std::size_t from) const;
+  bool is_ear(std::size_t at, bool strict) const;
 
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Vec2d> points_;        // the polygon in its plane, counter-clockwise
+  std::vector<Vec2d> distinct_;      // without repeated corners
   std::vector<std::uint32_t> left_;  // corners not yet cut off
 };
 
