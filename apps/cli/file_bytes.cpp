@@ -4,9 +4,6 @@
 #include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "fovea/base/error.h"
@@ -19,6 +16,9 @@ using Plain = nlohmann::json;
 
 namespace {
 
+// Enough to tell formats apart by their content.
+constexpr std::uint64_t kHead = 8192;
+
 // In order of precedence: a buffer view with several uses counts for the last of them here.
 enum class Kind { other, animation, images, geometry };
 
@@ -27,6 +27,12 @@ const Plain& member(const Plain& json, const char* name) {
   if (!json.is_object()) return nothing;
   const auto at = json.find(name);
   return at == json.end() ? nothing : *at;
+}
+
+const Plain& list(const Plain& json, const char* name) {
+  static const Plain nothing;
+  const Plain& found = member(json, name);
+  return found.is_array() ? found : nothing;
 }
 
 std::uint64_t number(const Plain& json) { return json.is_number_unsigned() ? json.get<std::uint64_t>() : 0; }
@@ -39,8 +45,7 @@ bool is_external(const Plain& element) {
 /// Sorts the bytes of a glTF file by what they are for.
 class GltfMeter {
  public:
-  explicit GltfMeter(const Plain& root)
-      : root_(root), kinds_(member(root, "bufferViews").size(), Kind::other) {
+  explicit GltfMeter(const Plain& root) : root_(root), kinds_(list(root, "bufferViews").size(), Kind::other) {
     mark_meshes();
     mark_images();
     mark_animation();
@@ -54,7 +59,7 @@ class GltfMeter {
     counts.animation = sums[1];
     counts.images = sums[2];
     counts.geometry = sums[3];
-    for (const Plain& image : member(root_, "images")) {
+    for (const Plain& image : list(root_, "images")) {
       const Plain& uri = member(image, "uri");
       if (uri.is_string() && !is_external(image)) counts.images += uri.get_ref<const std::string&>().size();
     }
@@ -63,14 +68,14 @@ class GltfMeter {
 
   std::uint64_t external_buffer_bytes() const {
     std::uint64_t sum = 0;
-    for (const Plain& buffer : member(root_, "buffers")) {
+    for (const Plain& buffer : list(root_, "buffers")) {
       if (is_external(buffer)) sum += number(member(buffer, "byteLength"));
     }
     return sum;
   }
 
   bool image_is_external(std::size_t index) const {
-    const Plain& images = member(root_, "images");
+    const Plain& images = list(root_, "images");
     return index < images.size() && is_external(images[index]);
   }
 
@@ -82,7 +87,7 @@ class GltfMeter {
   }
 
   void mark_accessor(const Plain& index, Kind kind) {
-    const Plain& accessors = member(root_, "accessors");
+    const Plain& accessors = list(root_, "accessors");
     if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) return;
     const Plain& accessor = accessors[index.get<std::size_t>()];
     mark_view(member(accessor, "bufferView"), kind);
@@ -92,8 +97,8 @@ class GltfMeter {
   }
 
   void mark_meshes() {
-    for (const Plain& mesh : member(root_, "meshes")) {
-      for (const Plain& primitive : member(mesh, "primitives")) {
+    for (const Plain& mesh : list(root_, "meshes")) {
+      for (const Plain& primitive : list(mesh, "primitives")) {
         const Plain& mode = member(primitive, "mode");
         const bool triangles = mode.is_null() || number(mode) >= 4;
         if (triangles) mark_primitive(primitive);
@@ -104,7 +109,7 @@ class GltfMeter {
   void mark_primitive(const Plain& primitive) {
     mark_accessor(member(primitive, "indices"), Kind::geometry);
     for (const Plain& attribute : member(primitive, "attributes")) mark_accessor(attribute, Kind::geometry);
-    for (const Plain& target : member(primitive, "targets")) {
+    for (const Plain& target : list(primitive, "targets")) {
       for (const Plain& attribute : target) mark_accessor(attribute, Kind::geometry);
     }
     const Plain& draco = member(member(primitive, "extensions"), "KHR_draco_mesh_compression");
@@ -112,24 +117,24 @@ class GltfMeter {
   }
 
   void mark_images() {
-    for (const Plain& image : member(root_, "images")) mark_view(member(image, "bufferView"), Kind::images);
+    for (const Plain& image : list(root_, "images")) mark_view(member(image, "bufferView"), Kind::images);
   }
 
   void mark_animation() {
-    for (const Plain& animation : member(root_, "animations")) {
-      for (const Plain& sampler : member(animation, "samplers")) {
+    for (const Plain& animation : list(root_, "animations")) {
+      for (const Plain& sampler : list(animation, "samplers")) {
         mark_accessor(member(sampler, "input"), Kind::animation);
         mark_accessor(member(sampler, "output"), Kind::animation);
       }
     }
-    for (const Plain& skin : member(root_, "skins")) {
+    for (const Plain& skin : list(root_, "skins")) {
       mark_accessor(member(skin, "inverseBindMatrices"), Kind::animation);
     }
   }
 
   // A compressed view's own length is that of the data once unpacked.
   std::uint64_t view_bytes(std::size_t index) const {
-    const Plain& view = member(root_, "bufferViews")[index];
+    const Plain& view = list(root_, "bufferViews")[index];
     for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
       const Plain& compressed = member(member(view, "extensions"), name);
       if (compressed.is_object()) return number(member(compressed, "byteLength"));
@@ -176,59 +181,71 @@ const char* name_of(FileFormat format) {
   return "other";
 }
 
-FileBytes measure_gltf(const Plain& root, std::uint64_t main_file, const Model& model) {
-  const GltfMeter meter(root);
-  FileBytes result;
-  result.kinds = meter.bytes();
-  result.files = main_file + meter.external_buffer_bytes();
+// Bytes of the image files beside a glTF file.
+std::uint64_t external_image_bytes(const GltfMeter& meter, const Model& model) {
+  std::uint64_t sum = 0;
   for (std::size_t i = 0; i < model.images.size(); ++i) {
-    if (!meter.image_is_external(i)) continue;
-    result.kinds.images += model.images[i].bytes.size();
-    result.files += model.images[i].bytes.size();
+    if (meter.image_is_external(i)) sum += model.images[i].bytes.size();
   }
-  return result;
+  return sum;
 }
 
-FileBytes measure_other(const fs::path& path, std::uint64_t main_file, const Model& model) {
-  FileBytes result;
-  result.files = main_file;
+// What lies beside a file of another format, from what reading found.
+void add_files_read(const fs::path& path, const Model& model, FileBytes& result) {
   std::uint64_t inside = 0;
   for (const EncodedImage& image : model.images) {
     result.kinds.images += image.bytes.size();
-    if (image.uri.empty()) {
-      inside += image.bytes.size();
-    } else {
-      result.files += image.bytes.size();
-    }
+    (image.uri.empty() ? inside : result.files) += image.bytes.size();
   }
-  result.kinds.geometry = main_file - std::min(main_file, inside);
+  result.kinds.geometry -= std::min(result.kinds.geometry, inside);
   std::error_code missing;
   const std::uint64_t materials = fs::file_size(fs::path(path).replace_extension(".mtl"), missing);
   if (!missing) result.files += materials;
-  return result;
 }
 
-}  // namespace
+// The files that writing left beside the first: materials and images.
+void add_files_written(std::span<const fs::path> files, FileBytes& result) {
+  for (const fs::path& file : files.subspan(1)) {
+    const std::uint64_t size = fs::file_size(file);
+    result.files += size;
+    if (file.extension() != ".mtl") result.kinds.images += size;
+  }
+}
 
-FileBytes measure_file(const fs::path& path, const Model& model) {
+FileBytes measure(const fs::path& path, const Model& model, std::span<const fs::path> written) {
   std::ifstream in(path, std::ios::binary);
   std::error_code failed;
   const std::uint64_t size = fs::file_size(path, failed);
   if (!in || failed) throw Error(ErrorKind::input, "cannot read the file", path.string());
 
-  std::array<char, 64> head{};
-  in.read(head.data(), head.size());
-  const auto got = static_cast<std::size_t>(in.gcount());
+  const std::string head = read_text(in, 0, std::min<std::uint64_t>(size, kHead));
   in.clear();
-  const FileFormat format = detect_format(std::as_bytes(std::span(head.data(), got)), path);
-
+  const FileFormat format = detect_format(std::as_bytes(std::span(head)), path);
   const bool gltf = format == FileFormat::gltf || format == FileFormat::glb;
   const Plain root = gltf ? read_json(in, format, size) : Plain();
-  FileBytes result = root.is_object() ? measure_gltf(root, size, model) : measure_other(path, size, model);
-  result.format = name_of(format);
+
+  FileBytes result{name_of(format), size, {}};
+  if (root.is_object()) {
+    const GltfMeter meter(root);
+    const std::uint64_t images = external_image_bytes(meter, model);
+    result.kinds = meter.bytes();
+    result.kinds.images += images;
+    result.files += meter.external_buffer_bytes() + images;
+  } else {
+    result.kinds.geometry = size;
+    written.empty() ? add_files_read(path, model, result) : add_files_written(written, result);
+  }
   const std::uint64_t known = result.kinds.geometry + result.kinds.images + result.kinds.animation;
   result.kinds.other = result.files - std::min(result.files, known);
   return result;
+}
+
+}  // namespace
+
+FileBytes measure_input(const fs::path& path, const Model& model) { return measure(path, model, {}); }
+
+FileBytes measure_output(std::span<const fs::path> files, const Model& model) {
+  return measure(files.front(), model, files);
 }
 
 nlohmann::ordered_json to_json(const FileBytes& bytes) {

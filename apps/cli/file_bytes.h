@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
 #include "fovea/io/write.h"
@@ -17,11 +18,12 @@ struct FileBytes {
   ByteCounts kinds;         ///< Adds up to `files`.
 };
 
-/// Measures the file at `path`, which holds `model` (read from it or written to it). glTF is measured
-/// exactly from its buffer views, compressed sizes included; of any other format the images are
-/// known and the rest counts as geometry. Throws Error(input) if the file cannot be read. O(size of
-/// the JSON part).
-FileBytes measure_file(const std::filesystem::path& path, const Model& model);
+/// Measures the file at `path`, from which `model` was read. glTF is measured exactly from its buffer
+/// views, compressed sizes included; of any other format the images are known and the rest counts as
+/// geometry. Throws Error(input) if the file cannot be read. O(size of the JSON part).
+FileBytes measure_input(const std::filesystem::path& path, const Model& model);
+/// The same for the files that `write_model` returned.
+FileBytes measure_output(std::span<const std::filesystem::path> files, const Model& model);
 
 nlohmann::ordered_json to_json(const FileBytes& bytes);
 

@@ -27,7 +27,7 @@ class Info : public Verb {
     check_input(input_);
     const Model model =
         session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
-    const Snapshot totals = snapshot(model, measure_file(input_, model));
+    const Snapshot totals = snapshot(model, measure_input(input_, model));
     const ModelFacts facts = session.phase("inspect", [&] { return inspect(model, session.context); });
 
     session.report["inputs"] = Json::array({file_json(input_, totals.bytes)});

@@ -55,9 +55,10 @@ class Sample : public Verb {
     }
     check_output(output_, {}, write_options_.force);
     const Model model = session.phase("make", [&] { return make_sample(name_, detail_, session.context); });
-    session.phase("write", [&] { write_model(model, output_, write_options_, session.context); });
+    const auto files =
+        session.phase("write", [&] { return write_model(model, output_, write_options_, session.context); });
 
-    const Snapshot made = snapshot(model, measure_file(output_, model));
+    const Snapshot made = snapshot(model, measure_output(files, model));
     session.report["outputs"] = Json::array({file_json(output_, made.bytes)});
     session.report["after"] = to_json(made);
     session.print_summary(output_ + ": " + plural(made.counts.triangles, "triangle", "triangles") + ", " +

@@ -55,7 +55,7 @@ class Simplify : public Verb {
     check_request();
     const Model model =
         session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
-    const Snapshot before = snapshot(model, measure_file(input_, model));
+    const Snapshot before = snapshot(model, measure_input(input_, model));
     Importance importance;
     if (!importance_.empty()) {
       importance =
@@ -63,8 +63,9 @@ class Simplify : public Verb {
     }
     const SimplifyResult result =
         session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });
-    session.phase("write", [&] { write_model(result.model, output_, write_options_, session.context); });
-    const Snapshot after = snapshot(result.model, measure_file(output_, result.model));
+    const auto files = session.phase(
+        "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
+    const Snapshot after = snapshot(result.model, measure_output(files, result.model));
     return tell(session, before, after, result);
   }
 
@@ -88,7 +89,7 @@ class Simplify : public Verb {
     session.report["result"] = result_json(result, reached);
     session.print_summary(fmt::format("{} -> {}\n{}{}time     {}, peak memory {}\n", printable(input_),
                                       printable(output_), comparison_text(before, after),
-                                      result_text(result, reached), seconds_text(session.seconds()),
+                                      result_text(result, options_), seconds_text(session.seconds()),
                                       bytes_text(peak_memory_bytes())));
     if (reached) return 0;
     if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");

@@ -23,18 +23,22 @@ std::string stop_text(const SimplifyResult& result, bool reached) {
                      count_text(result.triangles_target));
 }
 
-std::string blocked_text(const BlockCounts& blocked) {
+std::string blocked_text(const BlockCounts& blocked, const SimplifyOptions& options) {
   if (blocked.edges == 0) return {};
   TextTable table("lrl");
-  const auto row = [&](const char* name, std::uint64_t count, const char* remedy) {
-    if (count > 0) table.row({name, count_text(count), remedy});
+  const auto row = [&](const char* name, std::uint64_t count, const char* why) {
+    if (count > 0) table.row({name, count_text(count), why});
   };
-  row("locked", blocked.locked, "an end may not move: drop --lock-boundary, or lower the --importance");
+  row("locked", blocked.locked,
+      options.lock_boundary ? "no end may move: drop --lock-boundary"
+                            : "no end may move: lower the --importance");
   row("topology", blocked.topology,
-      "would pinch the surface or close a hole: drop --keep-topology if it is set");
-  row("flip", blocked.flip, "would fold the surface or its texture over: a lower --uv-weight may help");
+      options.keep_topology ? "would close a hole or pinch the surface: drop --keep-topology"
+                            : "would pinch the surface: no option allows that");
+  row("flip", blocked.flip, "would fold the surface or its texture over: no option allows that");
   row("last", blocked.last,
-      "the last triangles of a piece: drop --keep-topology, or raise --error, to let it vanish");
+      options.keep_topology ? "the last triangles of a piece: drop --keep-topology, so that it may vanish"
+                            : "the last triangles of the model: one piece always stays");
   return fmt::format("{} left cannot collapse:\n{}", plural(blocked.edges, "edge", "edges"), table.text(2));
 }
 
@@ -62,12 +66,13 @@ Json result_json(const SimplifyResult& result, bool reached) {
             {"last", b.last}}}};
 }
 
-std::string result_text(const SimplifyResult& result, bool reached) {
+std::string result_text(const SimplifyResult& result, const SimplifyOptions& options) {
+  const bool reached = reached_target(result, options);
   TextTable table("l");
   table.row({"error", fmt::format("{} of the diagonal, {} units", number_text(result.error_rel),
                                   number_text(result.error_abs))});
   table.row({"stopped", stop_text(result, reached)});
-  return table.text(0) + blocked_text(result.blocked);
+  return table.text(0) + blocked_text(result.blocked, options);
 }
 
 }  // namespace fovea::cli

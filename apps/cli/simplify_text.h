@@ -14,7 +14,8 @@ bool reached_target(const SimplifyResult& result, const SimplifyOptions& options
 /// "result" of the report: target, reached, stop reason, error, blocked counts.
 Json result_json(const SimplifyResult& result, bool reached);
 
-/// What became of it, for people: error, stop reason, and when stuck the reasons with their remedies.
-std::string result_text(const SimplifyResult& result, bool reached);
+/// What became of it, for people: error, stop reason, and when stuck the reasons and the options that would
+/// unblock it.
+std::string result_text(const SimplifyResult& result, const SimplifyOptions& options);
 
 }  // namespace fovea::cli

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fovea/io/read.h"
 #include "run_command.h"
 
 namespace fovea::test {
@@ -155,6 +156,21 @@ TEST_F(Verbs, SimplifyReportsBeforeAndAfter) {
   EXPECT_EQ(json["exit_code"], 0);
 }
 
+TEST_F(Verbs, SimplifyCountsTheFilesBesideTheOutput) {
+  for (const std::string extension : {"gltf", "obj", "ply"}) {
+    const Folder folder;
+    const std::string path = folder / ("small." + extension);
+    const Outcome outcome = fovea({"simplify", grid_, "-o", path, "--ratio", "0.5", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    std::uint64_t sum = 0;
+    for (const std::string& name : folder.names()) sum += std::filesystem::file_size(folder / name);
+    const nlohmann::json json = outcome.json();
+    EXPECT_EQ(json["outputs"][0]["format"], extension);
+    EXPECT_EQ(json["after"]["bytes"]["files"], sum) << extension;
+    EXPECT_EQ(json["after"]["bytes"]["images"], json["before"]["bytes"]["images"]) << extension;
+  }
+}
+
 TEST_F(Verbs, SimplifyTellsItInText) {
   const Outcome outcome = fovea({"simplify", grid_, "-o", out("text.glb"), "--ratio", "0.5"});
   EXPECT_EQ(outcome.code, 0);
@@ -215,6 +231,48 @@ TEST_F(Verbs, SimplifyAllowsAMiss) {
   EXPECT_EQ(result["reached"], false);
   EXPECT_EQ(result["stop"], "stuck");
   EXPECT_GT(result["blocked"]["locked"], 0);
+}
+
+/// Triangles of a model whose middle lies in x < 0.5, and all of them.
+std::pair<std::size_t, std::size_t> left_and_all(const std::string& path) {
+  Context context;
+  const Model model = read_model(path, {}, context);
+  const TriMesh& mesh = model.meshes[0].surface;
+  std::size_t left = 0;
+  for (const auto& triangle : mesh.triangles) {
+    float sum = 0;
+    for (const VertexId v : triangle) sum += mesh.positions[v.index()].x;
+    left += sum < 1.5f;
+  }
+  return {left, mesh.face_count()};
+}
+
+TEST_F(Verbs, SimplifySpendsTrianglesWhereTheImportanceIs) {
+  Context context;
+  const Model model = read_model(grid_, {}, context);
+  std::string list = "importance\n";
+  for (const Vec3f& p : model.meshes[0].surface.positions) list += p.x < 0.5f ? "1000\n" : "1\n";
+  const std::string csv = folder_.write("importance.csv", list);
+  const Outcome outcome =
+      fovea({"simplify", grid_, "-o", out("left.glb"), "--ratio", "0.3", "--importance", csv});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto [left, all] = left_and_all(out("left.glb"));
+  // Both halves have the same shape: without importance each keeps about a half.
+  EXPECT_GT(left, all * 2 / 3);
+}
+
+TEST_F(Verbs, SimplifyRefusesAnImportanceThatIsNotThere) {
+  const auto code_and_error = [&](const std::string& source) {
+    const Outcome outcome =
+        fovea({"simplify", grid_, "-o", out("x.glb"), "--ratio", "0.5", "--importance", source});
+    return std::pair(outcome.code, outcome.err);
+  };
+  EXPECT_EQ(code_and_error("no-such.npy").first, 3);
+  EXPECT_EQ(code_and_error("_NOT_THERE").first, 2);
+  const auto [code, error] = code_and_error(folder_.write("short.csv", "1\n2\n"));
+  EXPECT_EQ(code, 2);
+  EXPECT_THAT(error, HasSubstr("short.csv"));
+  EXPECT_FALSE(std::filesystem::exists(out("x.glb")));
 }
 
 TEST_F(Verbs, VerboseTellsPhases) {

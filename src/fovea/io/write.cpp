@@ -180,6 +180,14 @@ fs::path place_of(const fs::path& path, const OutputFile& file) {
   return folder_of(path) / relative;
 }
 
+std::vector<OutputFile> encode_model(const Model& model, const fs::path& path, const WriteOptions& options,
+                                     Context& context) {
+  const std::string extension = extension_of(path), stem = path.stem().string();
+  if (extension == ".obj") return write_obj(model, stem, context);
+  if (extension == ".ply") return write_ply(model, stem, context);
+  return write_gltf(model, extension == ".glb", stem, options, context).files;
+}
+
 }  // namespace
 
 OptionList describe(WriteOptions& o) {
@@ -229,18 +237,18 @@ void write_files(const fs::path& path, std::span<const OutputFile> files, bool f
   pending.rename_all();
 }
 
-void write_model(const Model& model, const fs::path& path, const WriteOptions& options, Context& context) {
+std::vector<fs::path> write_model(const Model& model, const fs::path& path, const WriteOptions& options,
+                                  Context& context) {
   check_output(path, options.force);
   WriteOptions checked = options;
   check(describe(checked));
-  const std::string extension = extension_of(path), stem = path.stem().string();
-  if (extension == ".obj") {
-    write_files(path, write_obj(model, stem, context), options.force);
-  } else if (extension == ".ply") {
-    write_files(path, write_ply(model, stem, context), options.force);
-  } else {
-    write_files(path, write_gltf(model, extension == ".glb", stem, options, context).files, options.force);
+  const std::vector<OutputFile> files = encode_model(model, path, options, context);
+  write_files(path, files, options.force);
+  std::vector<fs::path> written{path};
+  for (const OutputFile& file : files) {
+    if (!file.name.empty()) written.push_back(place_of(path, file));
   }
+  return written;
 }
 
 }  // namespace fovea

@@ -38,13 +38,14 @@ struct OutputFile {
 
 /// Writes a model in the format of the extension: .glb, .gltf (with .bin and images beside it),
 /// .obj (+ .mtl and images), .ply. All files are written to temporary names and renamed when all are
-/// complete; nothing is left behind on failure.
+/// complete; nothing is left behind on failure. Returns the files that make up the output: `path`, then
+/// those beside it.
 ///
 /// Throws Error(output), Error(usage) for an unknown extension or an existing file without `force`,
 /// Error(unsupported) if the format cannot hold what the model needs (a PLY of an animation loses
 /// it: that is a diagnostic, not an error).
-void write_model(const Model& model, const std::filesystem::path& path, const WriteOptions& options,
-                 Context& context);
+std::vector<std::filesystem::path> write_model(const Model& model, const std::filesystem::path& path,
+                                               const WriteOptions& options, Context& context);
 
 /// Throws what `write_model` would throw about its output alone, so that nobody works for long to hear of it
 /// in the end: Error(usage) for an unknown extension or an existing file without `force`, Error(output) for a
