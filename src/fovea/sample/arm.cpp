@@ -138,7 +138,7 @@ void add_influences(SplitPart& part) {
   VertexArray joints = four_wide(Semantic::joints, {ComponentType::u8, false});
   VertexArray weights = four_wide(Semantic::weights, {});
   for (const Vec3f& p : part.positions) {
-    const double elbow = smooth_step(kElbow.x - 0.22, kElbow.x + 0.22, p.x);
+    const double elbow = smooth_step(kElbow.x - 0.30, kElbow.x + 0.30, p.x);
     const double wrist = smooth_step(kWrist.x - 0.14, kWrist.x + 0.14, p.x);
     const int first = wrist > 0 ? 1 : 0;  // The two stretches do not overlap.
     const auto second_weight = static_cast<float>(wrist > 0 ? wrist : elbow);

@@ -115,7 +115,7 @@ Color finger(double s, double t, int index) {
   for (const double knuckle : {0.42, 0.45, 0.66, 0.68}) {
     c = c * (1 - 0.10 * smooth_step(0.012, 0.0, std::abs(t - knuckle)));
   }
-  const double x = (s - 0.5) / 0.15, y = (t - 0.815) / 0.095;
+  const double x = (s - 0.5) / 0.15, y = (t - 0.83) / 0.075;
   const double nail = std::pow(std::pow(std::abs(x), 3.0) + std::pow(std::abs(y), 3.0), 1 / 3.0) - 1;
   c = mix(c, kBlush * 0.8, 0.5 * coverage(nail - 0.10, 0.15));
   const Color plate = mix(kNail, rgb(0xF6E6DA), smooth_step(0.55, 0.7, y));

@@ -97,7 +97,7 @@ Sheet handle(double side, double detail, const Chart& chart) {
     const Vec3d tangent = normalized(Vec3d{along.x, along.y, 0}), across{0, 0, 1};
     const Vec3d outward = cross(across, tangent);
     const bool cap = row == 0 || row == length + 2;
-    const double t = static_cast<double>(i) / length, swell = 1 + 0.45 * std::pow(2 * t - 1, 4);
+    const double t = static_cast<double>(i) / length, swell = 1 + 0.25 * std::pow(2 * t - 1, 4);
     const double angle = 2 * kPi * (column % columns) / columns;
     const Vec3d offset = outward * (0.020 * std::cos(angle)) + across * (0.032 * std::sin(angle));
     const Vec3d p = Vec3d{at(i).x, at(i).y, 0} + offset * (cap ? 0 : swell);
