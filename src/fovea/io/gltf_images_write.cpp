@@ -48,7 +48,7 @@ bool suffix_fits(const std::string& path, const std::string& mime_type) {
 
 /// Empty if the path could leave the folder of the output.
 std::string safe_path(const std::string& path) {
-  if (path.empty() || path.find('\\') != std::string::npos) return {};
+  if (path.empty() || path.find_first_of("\\:") != std::string::npos) return {};
   try {
     return relative_path_of_uri(percent_encode(path));
   } catch (const Error&) {
@@ -104,18 +104,6 @@ class FileNames {
   const std::vector<EncodedImage>& images_;
   std::map<std::string, std::pair<std::string, std::size_t>> image_of_;
 };
-
-/// The URI of the file as it was written, if it still means the file.
-std::string uri_of(const EncodedImage& image, const std::string& name) {
-  const Json read = parse_object(image.json);
-  const std::string uri =
-      read.contains("uri") && read["uri"].is_string() ? read["uri"].get<std::string>() : "";
-  try {
-    if (!uri.empty() && relative_path_of_uri(uri) == name) return uri;
-  } catch (const Error&) {
-  }
-  return percent_encode(name);
-}
 
 }  // namespace
 
@@ -175,11 +163,8 @@ Json image_files(const std::vector<EncodedImage>& images, const std::string& ste
       wanted = std::filesystem::path(wanted).replace_extension(image_suffix(type)).generic_string();
     }
     const auto [name, is_new] = names.take(wanted, i);
-    const Json read = parse_object(image.json);
     Json object = without_data(image);
-    object["uri"] = uri_of(image, name);
-    // A file tells its type by itself: the member only stays where it was or where it was needed.
-    if (!type.empty() && (read.contains("mimeType") || !read.contains("uri"))) object["mimeType"] = type;
+    object["uri"] = percent_encode(name);
     list.push_back(std::move(object));
     if (!is_new) continue;
     files.push_back({name, bytes_of(image)});

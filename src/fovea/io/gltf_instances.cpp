@@ -58,6 +58,13 @@ std::vector<float> read_attribute(const Json& attributes, const char* name, int 
   return accessor.width == width && accessor.count == count ? accessor.to_floats() : std::vector<float>{};
 }
 
+bool has_places(const Json& extension) {
+  const auto attributes = extension.find("attributes");
+  if (attributes == extension.end()) return false;
+  return attributes->contains("TRANSLATION") || attributes->contains("ROTATION") ||
+         attributes->contains("SCALE");
+}
+
 bool nearly_equal(const Mat4& a, const Mat4& b) {
   double size = 1;
   for (const double x : a.m) size = std::max(size, std::abs(x));
@@ -87,10 +94,13 @@ bool says_already(const Json& extension, const Node& node, const std::vector<Acc
 
 void write_instances(Json& object, const Node& node, const std::vector<Accessor>& carried,
                      BufferWriter& buffers) {
-  if (node.instances.empty() || node.mesh < 0) {
-    erase_extension(object, kName);
-    return;
+  if (node.mesh < 0) erase_extension(object, kName);
+  if (node.instances.empty()) {
+    const Json* read = find_extension(object, kName);
+    // Attributes of other extensions stay, even without places of their own.
+    if (read && has_places(*read)) erase_extension(object, kName);
   }
+  if (node.mesh < 0 || node.instances.empty()) return;
   const Json* present = find_extension(object, kName);
   if (present && says_already(*present, node, carried)) return;
   Placements placements;
