@@ -78,13 +78,13 @@ Sheet underside(const std::vector<Ring>& wall, int columns, const Chart& chart) 
 
 /// A bent tube from the neck to the shoulder, closed inside of the wall; `side` is -1 or 1.
 Sheet handle(double side, double detail, const Chart& chart) {
-  static const Curve spine({{0.150, 1.300},
-                            {0.225, 1.365},
+  static const Curve spine({{0.163, 1.325},
+                            {0.230, 1.364},
                             {0.330, 1.365},
                             {0.420, 1.280},
                             {0.440, 1.140},
-                            {0.415, 1.030},
-                            {0.385, 0.975}});
+                            {0.420, 1.030},
+                            {0.397, 0.985}});
   Sheet sheet;
   sheet.columns = scaled(20, detail);
   const int length = scaled(64, detail);
