@@ -504,6 +504,25 @@ TEST(GltfWrite, TargetsHaveAllTheSameAttributesAndZerosCostNothing) {
   EXPECT_TRUE(written.accessor(targets[1]["TEXCOORD_0"]).contains("bufferView"));
 }
 
+TEST(GltfWrite, TargetsThatMoveLittleAreStoredSparse) {
+  TriMesh mesh = test::grid(20, 20);
+  mesh.position_morphs.resize(2, std::vector<Vec3f>(mesh.vertex_count()));
+  mesh.position_morphs[0][7] = {0, 0, 1};
+  mesh.position_morphs[0][99] = {0, 2, 0};
+  for (Vec3f& d : mesh.position_morphs[1]) d = {1, 1, 1};
+  const Written written(test::model_of(mesh));
+  const json& few = written.accessor(written.primitive()["targets"][0]["POSITION"]);
+  EXPECT_EQ(few["sparse"]["count"], 2);
+  EXPECT_FALSE(few.contains("bufferView"));
+  EXPECT_EQ(few["max"], json({0, 2, 1}));
+  EXPECT_FALSE(written.accessor(written.primitive()["targets"][1]["POSITION"]).contains("sparse"));
+  EXPECT_TRUE(test::corner_soup(written.read().meshes[0].surface) == test::corner_soup(mesh));
+  WriteOptions options;
+  options.quantize = true;
+  const Written quantized(test::model_of(mesh), options);
+  EXPECT_EQ(quantized.accessor(quantized.primitive()["targets"][0]["POSITION"])["sparse"]["count"], 2);
+}
+
 TEST(GltfWrite, NumberOfThreadsDoesNotShow) {
   std::vector<TriMesh> meshes;
   for (auto& family : test::all_families()) meshes.push_back(std::move(family.mesh));

@@ -1,9 +1,11 @@
 #include "fovea/io/write.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
@@ -134,7 +136,22 @@ TEST_F(Write, NothingIsLeftBehindOnFailure) {
   EXPECT_EQ(files(), std::vector<std::string>{"blocked"});
 }
 
-TEST_F(Write, FullDisksAndForbiddenFoldersAreErrors) {
+TEST_F(Write, AFullDiskIsAnErrorAndLeavesNothing) {
+  // A limit on the size of files fails like a full disk, in the middle of writing.
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const std::vector<OutputFile> out = {{"", bytes_of("main")}, {"side", std::vector<std::byte>(1 << 20)}};
+  const Error error = error_of([&] { write_files(folder_ / "x", out, false); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(error.kind(), ErrorKind::output);
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(Write, ForbiddenFoldersAreErrors) {
   fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
   if (access(folder_.c_str(), W_OK) == 0) GTEST_SKIP() << "permissions do not bind this user";
   EXPECT_EQ(error_of([&] {

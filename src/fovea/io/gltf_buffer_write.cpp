@@ -45,6 +45,14 @@ Json accessor_json(const Accessor& a) {
   return json;
 }
 
+Json sparse_json(const ViewAccessor::Sparse& sparse) {
+  Json json = {{"count", sparse.count}};
+  json["indices"] = {{"bufferView", sparse.index_view},
+                     {"componentType", static_cast<int>(sparse.index_type)}};
+  json["values"]["bufferView"] = sparse.value_view;
+  return json;
+}
+
 /// Smallest and largest stored number of every component.
 void set_bounds(Json& json, const Accessor& a) {
   Accessor raw = a;
@@ -198,6 +206,7 @@ int BufferWriter::add_accessor(const ViewAccessor& a) {
   json["type"] = type_name(a.width, a.matrix);
   if (!a.low.empty()) json["min"] = numbers(a.low);
   if (!a.high.empty()) json["max"] = numbers(a.high);
+  if (a.sparse) json["sparse"] = sparse_json(*a.sparse);
   return add_accessor_json(std::move(json));
 }
 

@@ -40,6 +40,14 @@ struct ViewAccessor {
   int width = 1;
   bool matrix = false;
   std::vector<double> low, high;  ///< Bounds as stored, empty for none.
+  /// Set if only some elements differ from zero; `view` is -1 then.
+  struct Sparse {
+    std::size_t count = 0;
+    int index_view = -1;  ///< Which elements, ascending, of type `index_type`.
+    ComponentType index_type = ComponentType::u16;
+    int value_view = -1;  ///< Their values, tightly packed.
+  };
+  std::optional<Sparse> sparse;
 };
 
 /// Small arrays of one use share a view, for the sake of short JSON; the format forbids to mix uses.

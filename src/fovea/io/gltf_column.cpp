@@ -86,10 +86,6 @@ void permute(Column& c, const std::vector<unsigned int>& new_place, std::size_t 
 
 }  // namespace
 
-bool Column::all_zero() const {
-  return std::all_of(values.begin(), values.end(), [](float v) { return v == 0; });
-}
-
 std::string attribute_name(const VertexArray& array) {
   switch (array.semantic) {
     case Semantic::uv: return fmt::format("TEXCOORD_{}", array.set);

@@ -28,7 +28,6 @@ struct Column {
   std::vector<float> values;  ///< [#vertices × width]
 
   std::size_t size() const { return width > 0 ? values.size() / static_cast<std::size_t>(width) : 0; }
-  bool all_zero() const;
 };
 
 /// Triangles with columns: the vertices' own and what each morph target adds.

@@ -14,9 +14,13 @@ constexpr std::size_t kMaxStride = 252;  // glTF 2.0, bufferView.byteStride
 /// Shorter indices end below the largest number of their type, which restarts strips on some GPUs.
 constexpr std::size_t kMaxShortVertices = 65535;
 
-std::size_t padded_size(const Column& c) {
-  return (static_cast<std::size_t>(c.width) * size_of(c.storage.type) + 3) / 4 * 4;
+/// How much smaller sparse storage must be to be worth the trouble of reading it.
+constexpr std::size_t kSparseGain = 2;
+
+std::size_t element_size(const Column& c) {
+  return static_cast<std::size_t>(c.width) * size_of(c.storage.type);
 }
+std::size_t padded_size(const Column& c) { return (element_size(c) + 3) / 4 * 4; }
 
 float snap(float value, const Column& c) {
   if (c.bits == 0) return value;
@@ -98,23 +102,32 @@ void encode_attributes(EncodedPart& out, std::span<const Column> columns) {
   }
 }
 
-EncodedPart::Attribute encode_target_column(EncodedPart& out, const Column& c) {
-  // An accessor without a view is all zeros and costs nothing.
-  if (c.all_zero()) return {c.name, describe(c, -1, 0)};
-  View view;
-  view.target = ViewTarget::vertices;
-  view.stride = padded_size(c);
-  view.count = c.size();
-  view.bytes.resize(view.count * view.stride);
-  encode(c, view.bytes.data(), view.stride);
+int add_view(EncodedPart& out, View view) {
   out.views.push_back(std::move(view));
-  return {c.name, describe(c, static_cast<int>(out.views.size()) - 1, 0)};
+  return static_cast<int>(out.views.size()) - 1;
 }
 
-void encode_indices(EncodedPart& out, const std::vector<std::uint32_t>& indices, std::size_t vertex_count) {
-  const bool is_short = vertex_count <= kMaxShortVertices;
+/// The rows of a column that are not all zero, and which they are.
+struct NonZeroRows {
+  std::vector<std::uint32_t> rows;
+  Column values;
+};
+
+NonZeroRows non_zero_rows(const Column& c) {
+  const std::size_t width = static_cast<std::size_t>(c.width);
+  NonZeroRows result{{}, {c.name, c.width, c.storage, c.bits, {}}};
+  for (std::size_t v = 0; v < c.size(); ++v) {
+    const auto row = c.values.begin() + static_cast<std::ptrdiff_t>(v * width);
+    if (std::all_of(row, row + c.width, [](float x) { return x == 0; })) continue;
+    result.rows.push_back(static_cast<std::uint32_t>(v));
+    result.values.values.insert(result.values.values.end(), row, row + c.width);
+  }
+  return result;
+}
+
+View index_view(const std::vector<std::uint32_t>& indices, bool is_short, ViewTarget target) {
   View view;
-  view.target = ViewTarget::indices;
+  view.target = target;
   view.stride = is_short ? 2 : 4;
   view.count = indices.size();
   view.bytes.resize(view.count * view.stride);
@@ -123,10 +136,50 @@ void encode_indices(EncodedPart& out, const std::vector<std::uint32_t>& indices,
     std::memcpy(view.bytes.data() + i * view.stride,
                 is_short ? static_cast<const void*>(&small) : &indices[i], view.stride);
   }
-  out.indices.view = static_cast<int>(out.views.size());
+  return view;
+}
+
+View value_view(const Column& c, std::size_t stride, ViewTarget target) {
+  View view;
+  view.target = target;
+  view.stride = stride;
+  view.count = c.size();
+  view.bytes.resize(view.count * view.stride);
+  encode(c, view.bytes.data(), view.stride);
+  return view;
+}
+
+ViewAccessor::Sparse encode_sparse(EncodedPart& out, const NonZeroRows& some, bool is_short) {
+  ViewAccessor::Sparse sparse;
+  sparse.count = some.rows.size();
+  sparse.index_type = is_short ? ComponentType::u16 : ComponentType::u32;
+  sparse.index_view = add_view(out, index_view(some.rows, is_short, ViewTarget::none));
+  sparse.value_view = add_view(out, value_view(some.values, element_size(some.values), ViewTarget::none));
+  return sparse;
+}
+
+/// A face has dozens of targets, each of which moves a corner of it: those are stored as what they move. An
+/// accessor without view and without sparse part is all zeros and costs nothing. Compression does as well
+/// with the zeros.
+EncodedPart::Attribute encode_target_column(EncodedPart& out, const Column& c, bool compressed) {
+  const NonZeroRows some = non_zero_rows(c);
+  ViewAccessor accessor = describe(c, -1, 0);
+  const bool is_short = c.size() <= kMaxShortVertices;
+  const std::size_t sparse_row = element_size(c) + (is_short ? 2 : 4);
+  if (some.rows.empty()) return {c.name, accessor};
+  if (!compressed && kSparseGain * some.rows.size() * sparse_row < c.size() * padded_size(c)) {
+    accessor.sparse = encode_sparse(out, some, is_short);
+  } else {
+    accessor.view = add_view(out, value_view(c, padded_size(c), ViewTarget::vertices));
+  }
+  return {c.name, accessor};
+}
+
+void encode_indices(EncodedPart& out, const std::vector<std::uint32_t>& indices, std::size_t vertex_count) {
+  const bool is_short = vertex_count <= kMaxShortVertices;
+  out.indices.view = add_view(out, index_view(indices, is_short, ViewTarget::indices));
   out.indices.count = indices.size();
   out.indices.storage = {is_short ? ComponentType::u16 : ComponentType::u32, false};
-  out.views.push_back(std::move(view));
 }
 
 bool needs_quantization(const ColumnPart& part) {
@@ -181,7 +234,10 @@ EncodedPart encode_part(SplitPart part, const WriteOptions& options, const Grid*
   encode_attributes(out, columns.columns);
   for (const auto& target : columns.targets) {
     out.targets.emplace_back();
-    for (const Column& c : target) out.targets.back().push_back(encode_target_column(out, c));
+    for (const Column& c : target) {
+      out.targets.back().push_back(
+          encode_target_column(out, c, options.compression != GeometryCompression::none));
+    }
   }
   encode_indices(out, columns.indices, columns.vertex_count());
   return out;
@@ -190,8 +246,15 @@ EncodedPart encode_part(SplitPart part, const WriteOptions& options, const Grid*
 Json place_part(EncodedPart part, BufferWriter& buffers) {
   std::vector<int> views;
   for (View& view : part.views) views.push_back(buffers.add_geometry(std::move(view)));
+  const auto place_view = [&](int& view) {
+    if (view >= 0) view = views[static_cast<std::size_t>(view)];
+  };
   const auto place = [&](ViewAccessor accessor) {
-    if (accessor.view >= 0) accessor.view = views[static_cast<std::size_t>(accessor.view)];
+    place_view(accessor.view);
+    if (accessor.sparse) {
+      place_view(accessor.sparse->index_view);
+      place_view(accessor.sparse->value_view);
+    }
     return buffers.add_accessor(accessor);
   };
   Json json = primitive_json(part.json, part.material, 4);
