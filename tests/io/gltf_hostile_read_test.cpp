@@ -356,6 +356,15 @@ TEST(GltfHostile, SmallFilesCannotAskForMuchMemory) {
         b.json["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 20'000}});
         b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 2;
       },
+      // many nodes of two bytes each
+      [](GltfBuilder& b) {
+        for (int i = 0; i < 3000; ++i) b.json["nodes"].push_back(Json::object());
+      },
+      // many attributes
+      [](GltfBuilder& b) {
+        for (int i = 0; i < 100; ++i)
+          b.json["meshes"][0]["primitives"][0]["attributes"]["_A" + std::to_string(i)] = 0;
+      },
       // many images of one view
       [](GltfBuilder& b) {
         const int view = b.add_view(std::vector<std::byte>(20'000));

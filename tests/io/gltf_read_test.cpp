@@ -271,6 +271,17 @@ TEST(GltfRead, NumbersThatAreNotFiniteBecomeZeroExceptInPositions) {
   for (const float x : model.meshes[0].surface.layers[0].values) EXPECT_TRUE(std::isfinite(x));
 }
 
+TEST(GltfRead, EmptyArraysAreNoTriangles) {
+  for (const int accessor : {0, 1}) {
+    GltfBuilder builder = GltfBuilder::triangle();
+    builder.json["accessors"][0]["count"] = accessor == 0 ? 0 : 3;
+    builder.json["accessors"][1]["count"] = 0;
+    builder.json["bufferViews"][0]["byteLength"] = accessor == 0 ? 0 : 36;
+    const Model model = read(builder);
+    EXPECT_EQ(model.meshes[0].surface.face_count(), 0u);
+  }
+}
+
 TEST(GltfRead, SourceVerticesCountOverAllTriangleParts) {
   GltfBuilder builder = GltfBuilder::triangle();
   // A second primitive over the same vertices, other winding; source vertices 3, 4, 5.
@@ -414,6 +425,16 @@ TEST(GltfRead, InstancesAreReadAndTheirDataIsCarried) {
   const Json kept = Json::parse(model.nodes[0].json)["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   EXPECT_EQ(kept, (Json{{"TRANSLATION", 0}, {"_ID", 1}}));
   EXPECT_EQ(model.extensions_used, std::vector<std::string>{"EXT_mesh_gpu_instancing"});
+}
+
+TEST(GltfRead, InstancesAreFinite) {
+  GltfBuilder builder = GltfBuilder::triangle();
+  const int t = builder.add_accessor<float>({std::numeric_limits<float>::quiet_NaN(), 1, 2}, "VEC3");
+  builder.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = t;
+  Context context;
+  const Model model = read(builder.glb(), context);
+  EXPECT_EQ(transform_point(model.nodes[0].instances.at(0), {0, 0, 0}), (Vec3d{0, 1, 2}));
+  EXPECT_EQ(codes(context), std::vector<std::string>{"non-finite-values"});
 }
 
 TEST(GltfRead, DataOfUnknownExtensionsIsCarriedOnceAndRenumbered) {

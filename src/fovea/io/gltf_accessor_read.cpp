@@ -148,7 +148,7 @@ void DataReader::read_dense(int accessor, const AccessorShape& shape, std::vecto
   }
   budget_.charge(shape.count, layout.packed_bytes(), json.place());
   bytes.resize(shape.byte_size());
-  if (!elements.first) return;
+  if (bytes.empty() || !elements.first) return;
   if (elements.stride == layout.packed_bytes()) {
     std::memcpy(bytes.data(), elements.first, bytes.size());
     return;
@@ -259,6 +259,7 @@ std::vector<std::byte> DataReader::side_file(const std::string& relative_path, c
 
 std::vector<std::uint32_t> to_indices(const Accessor& accessor) {
   std::vector<std::uint32_t> indices(accessor.count * static_cast<std::size_t>(accessor.width));
+  if (indices.empty()) return indices;
   const std::size_t size = size_of(accessor.storage.type);
   if (size == sizeof(std::uint32_t)) {
     std::memcpy(indices.data(), accessor.bytes.data(), accessor.bytes.size());

@@ -64,10 +64,10 @@ Animation read_animation(ReadState& state, const JsonView& json) {
   Animation animation;
   animation.name = json.text("name");
   for (const JsonView& sampler : json.at("samplers").elements()) {
-    animation.samplers.push_back(read_sampler(state, sampler));
+    state.add(animation.samplers, read_sampler(state, sampler), sampler);
   }
   for (const JsonView& channel : json.at("channels").elements()) {
-    animation.channels.push_back(read_channel(state, channel, animation.samplers.size()));
+    state.add(animation.channels, read_channel(state, channel, animation.samplers.size()), channel);
     const AnimationChannel& made = animation.channels.back();
     check_values(made, animation.samplers[static_cast<std::size_t>(made.sampler)], channel);
   }
@@ -79,7 +79,7 @@ Animation read_animation(ReadState& state, const JsonView& json) {
 
 void read_animations(ReadState& state) {
   for (const JsonView& json : state.root.elements("animations")) {
-    state.model.animations.push_back(read_animation(state, json));
+    state.add(state.model.animations, read_animation(state, json), json);
   }
 }
 

@@ -71,7 +71,7 @@ EncodedImage read_image(ReadState& state, const JsonView& json) {
 void read_images(ReadState& state) {
   for (const JsonView& json : state.root.elements("images")) {
     state.context.advance_or_throw("read", 0);
-    state.model.images.push_back(read_image(state, json));
+    state.add(state.model.images, read_image(state, json), json);
   }
 }
 

@@ -137,19 +137,19 @@ Texture read_texture(ReadState& state, const JsonView& json) {
 
 void read_samplers(ReadState& state) {
   for (const JsonView& json : state.root.elements("samplers")) {
-    state.model.samplers.push_back(read_sampler(state, json));
+    state.add(state.model.samplers, read_sampler(state, json), json);
   }
 }
 
 void read_textures(ReadState& state) {
   for (const JsonView& json : state.root.elements("textures")) {
-    state.model.textures.push_back(read_texture(state, json));
+    state.add(state.model.textures, read_texture(state, json), json);
   }
 }
 
 void read_materials(ReadState& state) {
   for (const JsonView& json : state.root.elements("materials")) {
-    state.model.materials.push_back(read_material(state, json));
+    state.add(state.model.materials, read_material(state, json), json);
   }
 }
 

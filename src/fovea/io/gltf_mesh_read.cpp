@@ -88,7 +88,7 @@ Mesh read_mesh(ReadState& state, const JsonView& json) {
     mesh.morph_weights.resize(targets);
   }
   std::vector<SplitPart> parts;
-  for (const JsonView& primitive : primitives) parts.push_back(read_part(state, primitive));
+  for (const JsonView& primitive : primitives) state.add(parts, read_part(state, primitive), primitive);
   charge_welding(state, parts, json);
   mesh.surface = weld(parts, state.context, json.place());
   Json rest = without(json.raw(), {"primitives"});
@@ -127,7 +127,7 @@ void read_meshes(ReadState& state) {
   const std::vector<JsonView> meshes = state.root.elements("meshes");
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     state.context.advance_or_throw("read", static_cast<double>(m) / static_cast<double>(meshes.size()));
-    state.model.meshes.push_back(read_mesh(state, meshes[m]));
+    state.add(state.model.meshes, read_mesh(state, meshes[m]), meshes[m]);
   }
 }
 

@@ -16,8 +16,12 @@ namespace {
 
 constexpr int kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
+/// Far beyond what any renderer takes; looking for names is quadratic in it.
+constexpr std::size_t kMaxAttributes = 64;
 /// The decoder's corner table and our indices.
 constexpr std::uint64_t kDracoBytesPerIndex = 16;
+/// Of a morph target, even an empty one.
+constexpr std::uint64_t kBytesPerTarget = 256;
 
 /// What an attribute's name says, and the widths that go with it.
 struct AttributeKind {
@@ -103,6 +107,11 @@ Accessor read_indices(ReadState& state, const JsonView& reference) {
 
 std::vector<NamedAccessor> read_attributes(ReadState& state, const JsonView& attributes, DracoData* draco) {
   std::vector<NamedAccessor> result;
+  if (attributes.raw().size() > kMaxAttributes) {
+    throw Error(ErrorKind::limit,
+                fmt::format("{} attributes are more than {}", attributes.raw().size(), kMaxAttributes),
+                attributes.place());
+  }
   for (const auto& [name, reference] : attributes.members()) {
     const auto known =
         draco ? std::find(draco->names.begin(), draco->names.end(), name) : decltype(draco->names.end()){};
@@ -169,22 +178,6 @@ std::vector<std::uint32_t> triangle_indices(ReadState& state, const JsonView& pr
   return indices;
 }
 
-std::vector<float> read_floats(ReadState& state, const Accessor& accessor, const JsonView& at) {
-  state.budget.charge(accessor.count, sizeof(float) * static_cast<std::uint64_t>(accessor.width), at.place());
-  std::vector<float> values = accessor.to_floats();
-  std::uint64_t bad = 0;
-  for (float& value : values) {
-    if (std::isfinite(value)) continue;
-    value = 0;
-    ++bad;
-  }
-  if (bad > 0) {
-    state.context.report("non-finite-values", "numbers that are not finite were replaced by 0", at.place(),
-                         bad);
-  }
-  return values;
-}
-
 std::vector<Vec3f> to_points(const std::vector<float>& values) {
   std::vector<Vec3f> points(values.size() / 3);
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -229,7 +222,7 @@ std::vector<VertexArray> read_arrays(ReadState& state, const std::vector<NamedAc
     if (kind.semantic == Semantic::custom) array.name = attribute.name;
     array.width = attribute.data.width;
     array.storage = attribute.data.storage;
-    array.values = read_floats(state, attribute.data, place);
+    array.values = state.finite_floats(attribute.data, place);
     arrays.push_back(std::move(array));
   }
   return arrays;
@@ -245,12 +238,13 @@ const Accessor* find_attribute(const std::vector<NamedAccessor>& attributes, std
 void read_targets(ReadState& state, const JsonView& primitive, const RawPrimitive& data, SplitPart& part) {
   const std::vector<JsonView> targets = primitive.elements("targets");
   for (std::size_t t = 0; t < data.targets.size(); ++t) {
+    state.budget.charge(1, kBytesPerTarget, targets[t].place());
     part.attribute_morphs.push_back(read_arrays(state, data.targets[t], targets[t]));
     const Accessor* positions = find_attribute(data.targets[t], "POSITION");
     if (positions) {
       const JsonView at = targets[t].at("POSITION");
       expect_width(*positions, 3, 3, at);
-      part.position_morphs.push_back(to_points(read_floats(state, *positions, at)));
+      part.position_morphs.push_back(to_points(state.finite_floats(*positions, at)));
     } else {
       state.budget.charge(part.positions.size(), sizeof(Vec3f), targets[t].place());
       part.position_morphs.emplace_back(part.positions.size());

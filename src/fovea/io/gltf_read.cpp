@@ -74,7 +74,7 @@ Model read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& f
   Model model;
   gltf::DataReader data(root, chunks.binary, folder, options, budget);
   gltf::Keeper keeper(data, budget, model);
-  gltf::ReadState state{root, data, budget, options, context, model, keeper};
+  gltf::ReadState state(root, data, budget, options, context, model, keeper);
   gltf::read_root(state);
   return model;
 }

@@ -1,6 +1,7 @@
 #include "fovea/io/gltf_read_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "fovea/io/gltf_references.h"
@@ -34,6 +35,43 @@ std::size_t Keeper::carry_view(const JsonView& reference) {
     model_.carried_buffer_views.emplace_back(bytes.begin(), bytes.end());
   }
   return entry->second;
+}
+
+ReadState::ReadState(const JsonView& root_view, DataReader& reader, ByteBudget& byte_budget,
+                     const ReadOptions& read_options, Context& call_context, Model& target,
+                     Keeper& json_keeper)
+    : root(root_view),
+      data(reader),
+      budget(byte_budget),
+      options(read_options),
+      context(call_context),
+      model(target),
+      keeper(json_keeper) {
+  for (const auto& [name, member] : root.members()) {
+    if (member.raw().is_array()) counts_.emplace(name, member.raw().size());
+  }
+  const auto lights = root.extension("KHR_lights_punctual");
+  if (lights) light_count_ = lights->elements("lights").size();
+}
+
+std::size_t ReadState::count(const char* array) const {
+  const auto known = counts_.find(array);
+  return known == counts_.end() ? 0 : known->second;
+}
+
+std::vector<float> ReadState::finite_floats(const Accessor& accessor, const JsonView& at) {
+  budget.charge(accessor.count, sizeof(float) * static_cast<std::uint64_t>(accessor.width), at.place());
+  std::vector<float> values = accessor.to_floats();
+  std::uint64_t bad = 0;
+  for (float& value : values) {
+    if (std::isfinite(value)) continue;
+    value = 0;
+    ++bad;
+  }
+  if (bad > 0) {
+    context.report("non-finite-values", "numbers that are not finite were replaced by 0", at.place(), bad);
+  }
+  return values;
 }
 
 Json without(const Json& object, std::initializer_list<const char*> members) {

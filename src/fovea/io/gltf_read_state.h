@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fovea/base/context.h"
 #include "fovea/io/byte_budget.h"
@@ -37,7 +40,25 @@ class Keeper {
 };
 
 /// What all parts of reading one file share.
-struct ReadState {
+class ReadState {
+ public:
+  ReadState(const JsonView& root_view, DataReader& reader, ByteBudget& byte_budget,
+            const ReadOptions& read_options, Context& call_context, Model& target, Keeper& json_keeper);
+
+  /// Number of elements of an array of the root object.
+  std::size_t count(const char* array) const;
+  std::size_t light_count() const { return light_count_; }
+
+  /// Appends to a list of the model; its size in memory is charged.
+  template <class T>
+  void add(std::vector<T>& list, T element, const JsonView& at) {
+    budget.charge(1, sizeof(T) + kBytesPerElement, at.place());
+    list.push_back(std::move(element));
+  }
+
+  /// The numbers of an accessor; those that are not finite become 0, which is reported.
+  std::vector<float> finite_floats(const Accessor& accessor, const JsonView& at);
+
   const JsonView& root;
   DataReader& data;
   ByteBudget& budget;
@@ -46,11 +67,11 @@ struct ReadState {
   Model& model;
   Keeper& keeper;
 
-  /// Number of elements of an array of the root object.
-  std::size_t count(const char* array) const {
-    const auto it = root.raw().find(array);
-    return it != root.raw().end() && it->is_array() ? it->size() : 0;
-  }
+ private:
+  static constexpr std::uint64_t kBytesPerElement = 128;  // Views and names on the way, roughly.
+
+  std::map<std::string, std::size_t, std::less<>> counts_;
+  std::size_t light_count_ = 0;
 };
 
 /// A copy of `object` without some of its members.

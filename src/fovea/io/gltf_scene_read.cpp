@@ -42,8 +42,7 @@ std::vector<float> instance_attribute(ReadState& state, const JsonView& attribut
     reference->fail(fmt::format("{} values for {} instances", accessor.count, count));
   }
   count = accessor.count;
-  state.budget.charge(count, sizeof(float) * static_cast<std::uint64_t>(width), reference->place());
-  return accessor.to_floats();
+  return state.finite_floats(accessor, *reference);
 }
 
 std::vector<Mat4> read_instances(ReadState& state, const JsonView& node) {
@@ -68,8 +67,7 @@ std::vector<Mat4> read_instances(ReadState& state, const JsonView& node) {
 void check_light(const ReadState& state, const JsonView& node) {
   const auto extension = node.extension("KHR_lights_punctual");
   if (!extension) return;
-  const auto lights = state.root.extension("KHR_lights_punctual");
-  extension->index("light", lights ? lights->elements("lights").size() : 0, "lights");
+  extension->index("light", state.light_count(), "lights");
 }
 
 Node read_node(ReadState& state, const JsonView& json) {
@@ -173,7 +171,7 @@ Skin read_skin(ReadState& state, const JsonView& json) {
 
 void read_nodes(ReadState& state) {
   const std::vector<JsonView> nodes = state.root.elements("nodes");
-  for (const JsonView& json : nodes) state.model.nodes.push_back(read_node(state, json));
+  for (const JsonView& json : nodes) state.add(state.model.nodes, read_node(state, json), json);
   refuse_cycles(state, nodes);
 }
 
@@ -183,19 +181,19 @@ void read_scenes(ReadState& state) {
     scene.name = json.text("name");
     scene.nodes = indices(json, "nodes", state.count("nodes"), "nodes");
     scene.json = state.keeper.keep(json.raw(), json);
-    state.model.scenes.push_back(std::move(scene));
+    state.add(state.model.scenes, std::move(scene), json);
   }
   state.model.default_scene = state.root.index("scene", state.model.scenes.size(), "scenes");
 }
 
 void read_skins(ReadState& state) {
   for (const JsonView& json : state.root.elements("skins"))
-    state.model.skins.push_back(read_skin(state, json));
+    state.add(state.model.skins, read_skin(state, json), json);
 }
 
 void read_cameras(ReadState& state) {
   for (const JsonView& json : state.root.elements("cameras")) {
-    state.model.cameras.push_back(read_camera(state, json));
+    state.add(state.model.cameras, read_camera(state, json), json);
   }
 }
 
