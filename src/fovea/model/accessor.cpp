@@ -39,6 +39,7 @@ float decode_component(double raw, Storage storage) {
 
 double encode_component(float value, Storage storage) {
   if (storage.type == ComponentType::f32) return value;
+  if (std::isnan(value)) return 0;
   return with_type(storage.type, [&](auto zero) {
     using Limits = std::numeric_limits<decltype(zero)>;
     const double top = static_cast<double>(Limits::max());

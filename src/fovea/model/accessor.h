@@ -21,7 +21,8 @@ struct Storage {
 
 /// What the number stored as `raw` stands for (glTF 2.0, "Accessor data types").
 float decode_component(double raw, Storage storage);
-/// The stored number nearest to `value`: rounded and clamped to the type's range for integers.
+/// The stored number nearest to `value`: rounded and clamped to the type's range for integers, in
+/// which NaN is 0.
 double encode_component(float value, Storage storage);
 
 /// A typed array as a file stores it, tightly packed and little-endian: data that Fovea carries

@@ -121,7 +121,8 @@ struct Model {
 std::vector<Mat4> world_transforms(const Model& model);
 
 /// For each mesh the world transforms of its instances, over all nodes that show it, in node order:
-/// of the default scene if there is one, else of all nodes. A mesh that no node shows has none. A
+/// of the default scene (the first if none is named), or of all nodes if there are no scenes. A mesh
+/// that no node shows has none. A
 /// skinned instance is placed by its first joint (joint · inverse bind): glTF ignores the node's own.
 std::vector<std::vector<Mat4>> mesh_instances(const Model& model);
 
