@@ -1,0 +1,14 @@
+#include "fovea/io/obj_read.h"
+
+#include "fuzz/fuzz_model.h"
+
+using namespace fovea;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::expect_answer([&] {
+    Context context;
+    fuzz::use(
+        read_obj(fuzz::bytes_of(data, size), "/nonexistent", "fuzz.obj", fuzz::small_limits(), context));
+  });
+  return 0;
+}

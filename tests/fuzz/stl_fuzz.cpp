@@ -1,0 +1,13 @@
+#include "fovea/io/stl_read.h"
+
+#include "fuzz/fuzz_model.h"
+
+using namespace fovea;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::expect_answer([&] {
+    Context context;
+    fuzz::use(read_stl(fuzz::bytes_of(data, size), "fuzz.stl", fuzz::small_limits(), context));
+  });
+  return 0;
+}
