@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <span>
 
@@ -12,24 +11,12 @@
 #include "fovea/io/glb.h"
 #include "fovea/io/gltf_json.h"
 #include "fovea/io/gltf_read.h"
+#include "fuzz/fuzz_model.h"
 
 namespace {
 
 using fovea::Random;
 using fovea::gltf::Json;
-
-fovea::ReadOptions small_limits() {
-  fovea::ReadOptions options;
-  options.max_elements = 1 << 18;
-  options.max_total_bytes = 1 << 26;
-  options.max_file_bytes = 1 << 20;
-  return options;
-}
-
-void check_model(const fovea::Model& model) {
-  for (const fovea::Mesh& mesh : model.meshes) check(mesh.surface);
-  static_cast<void>(counts(model));
-}
 
 // Bytes changed at random hardly ever leave JSON that can be parsed, so the mutator below changes values of
 // the tree and makes a container with right lengths of it.
@@ -142,14 +129,12 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fovea::Context context;
-  context.threads = 1;
-  try {
+  fovea::fuzz::expect_answer([&] {
+    fovea::Context context;
+    context.threads = 1;
     // The folder does not exist: a fuzzer has no business with files.
-    check_model(read_gltf(std::as_bytes(std::span(data, size)), "/nonexistent/fovea-fuzz", "fuzz.glb",
-                          small_limits(), context));
-  } catch (const fovea::Error& e) {
-    if (e.kind() == fovea::ErrorKind::internal || e.kind() == fovea::ErrorKind::usage) std::abort();
-  }
+    fovea::fuzz::use(fovea::read_gltf(fovea::fuzz::bytes_of(data, size), "/nonexistent", "fuzz.glb",
+                                      fovea::fuzz::small_limits(), context));
+  });
   return 0;
 }
