@@ -25,9 +25,9 @@ void add_flag(CLI::App& app, Option& option, const std::string& names) {
 }  // namespace
 
 std::string short_flag(const std::string& option) {
-  static const std::map<std::string, std::string> flags{{"output", "-o"}, {"verbose", "-v"}, {"help", "-h"}};
-  const auto at = flags.find(option);
-  return at == flags.end() ? std::string() : at->second;
+  static const std::map<std::string, std::string> kFlags{{"output", "-o"}, {"verbose", "-v"}, {"help", "-h"}};
+  const auto at = kFlags.find(option);
+  return at == kFlags.end() ? std::string() : at->second;
 }
 
 void Arguments::add(Positional positional) { positionals_.push_back(std::move(positional)); }

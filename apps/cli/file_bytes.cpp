@@ -22,17 +22,17 @@ constexpr std::uint64_t kHead = 8192;
 // In order of precedence: a buffer view with several uses counts for the last of them here.
 enum class Kind { other, animation, images, geometry };
 
+const Plain kNothing;
+
 const Plain& member(const Plain& json, const char* name) {
-  static const Plain nothing;
-  if (!json.is_object()) return nothing;
+  if (!json.is_object()) return kNothing;
   const auto at = json.find(name);
-  return at == json.end() ? nothing : *at;
+  return at == json.end() ? kNothing : *at;
 }
 
 const Plain& list(const Plain& json, const char* name) {
-  static const Plain nothing;
   const Plain& found = member(json, name);
-  return found.is_array() ? found : nothing;
+  return found.is_array() ? found : kNothing;
 }
 
 std::uint64_t number(const Plain& json) { return json.is_number_unsigned() ? json.get<std::uint64_t>() : 0; }
