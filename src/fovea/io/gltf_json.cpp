@@ -102,8 +102,7 @@ class TreeBuilder {
     std::sort(names.begin(), names.end());
     const auto twice = std::adjacent_find(names.begin(), names.end());
     if (twice != names.end()) {
-      throw Error(ErrorKind::format, fmt::format("an object has the member {} twice", shown(*twice)),
-                  place_);
+      throw Error(ErrorKind::format, fmt::format("an object has the member {} twice", shown(*twice)), place_);
     }
   }
 
