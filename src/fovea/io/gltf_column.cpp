@@ -66,7 +66,11 @@ void fill_up_targets(ColumnPart& part) {
     for (const Column& model : all) {
       const auto own =
           std::find_if(target.begin(), target.end(), [&](const Column& c) { return c.name == model.name; });
-      filled.push_back(own != target.end() ? std::move(*own) : model);
+      if (own != target.end()) {
+        filled.push_back(std::move(*own));
+      } else {
+        filled.push_back(model);
+      }
       filled.back().values.resize(count * static_cast<std::size_t>(model.width));
     }
     target = std::move(filled);

@@ -24,9 +24,9 @@ void for_each_index(const Json& json, const char* key, const F& f) {
 }
 
 const Json& extensions_of(const Json& object) {
-  static const Json none = Json::object();
+  static const Json kNone = Json::object();
   const auto at = object.find("extensions");
-  return at != object.end() ? *at : none;
+  return at != object.end() ? *at : kNone;
 }
 
 bool has_thickness(const Material& material) {

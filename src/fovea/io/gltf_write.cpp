@@ -4,14 +4,15 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
+#include <iterator>
 #include <memory>
-#include <set>
+#include <string_view>
 
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
+#include "fovea/io/glb_write.h"
 #include "fovea/io/gltf_buffer_write.h"
+#include "fovea/io/gltf_extensions_write.h"
 #include "fovea/io/gltf_images_write.h"
 #include "fovea/io/gltf_instances.h"
 #include "fovea/io/gltf_json_write.h"
@@ -25,41 +26,6 @@ namespace gltf {
 
 namespace {
 
-constexpr std::string_view kQuantization = "KHR_mesh_quantization";
-constexpr std::string_view kCompression = "EXT_meshopt_compression";
-
-/// Extensions that a file has because of how it stores things; a rewritten file may not have them any more.
-constexpr std::string_view kStorageExtensions[] = {kQuantization,
-                                                   kCompression,
-                                                   "KHR_meshopt_compression",
-                                                   "KHR_draco_mesh_compression",
-                                                   "EXT_mesh_gpu_instancing",
-                                                   "EXT_texture_webp",
-                                                   "EXT_texture_avif",
-                                                   "KHR_texture_basisu",
-                                                   "MSFT_texture_dds",
-                                                   "KHR_texture_transform",
-                                                   "KHR_materials_unlit"};
-constexpr std::string_view kTextureExtensions[] = {"EXT_texture_webp", "EXT_texture_avif",
-                                                   "KHR_texture_basisu", "MSFT_texture_dds"};
-
-template <class List>
-bool contains(const List& list, std::string_view name) {
-  return std::find(std::begin(list), std::end(list), name) != std::end(list);
-}
-
-/// Names of all extensions that objects below `json` have. Extras are the user's own.
-void find_extensions(const Json& json, std::set<std::string>& names) {
-  if (!json.is_structured()) return;
-  for (const auto& [key, value] : json.items()) {
-    if (json.is_object() && key == "extras") continue;
-    if (json.is_object() && key == "extensions" && value.is_object()) {
-      for (const auto& extension : value.items()) names.insert(extension.key());
-    }
-    find_extensions(value, names);
-  }
-}
-
 /// One part on its way: what it was, where it goes, and what was said about it.
 struct PartJob {
   std::size_t mesh = 0;
@@ -68,34 +34,6 @@ struct PartJob {
   EncodedPart encoded;
   Context notes;
 };
-
-void append(Bytes& out, std::uint32_t value) {
-  for (int i = 0; i < 4; ++i) out.push_back(static_cast<std::byte>(value >> (8 * i) & 0xFF));
-}
-
-/// glTF 2.0, "GLB file format".
-Bytes make_glb(std::string json, const Bytes& binary) {
-  constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBin = 0x004E4942;
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const std::uint64_t total = 12 + 8 + json.size() + (binary.empty() ? 0 : 8 + binary.size());
-  if (total > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(ErrorKind::limit, fmt::format("{} bytes do not fit a GLB file, which ends at 4 GiB", total),
-                {}, "write .gltf instead");
-  }
-  Bytes out;
-  out.reserve(total);
-  for (const std::uint32_t word : {kMagic, std::uint32_t{2}, static_cast<std::uint32_t>(total),
-                                   static_cast<std::uint32_t>(json.size()), kJson}) {
-    append(out, word);
-  }
-  const std::byte* text = reinterpret_cast<const std::byte*>(json.data());
-  out.insert(out.end(), text, text + json.size());
-  if (binary.empty()) return out;
-  append(out, static_cast<std::uint32_t>(binary.size()));
-  append(out, kBin);
-  out.insert(out.end(), binary.begin(), binary.end());
-  return out;
-}
 
 /// Everything that `write_gltf` knows while it works.
 class Writer {
@@ -113,6 +51,7 @@ class Writer {
   }
 
   GltfOutput run() {
+    check_references();
     plan_ = plan_quantization(model_, options_, context_);
     place_carried_data();
     encode_meshes();
@@ -123,10 +62,12 @@ class Writer {
     make_images();
     make_json_only();
     buffers_.finish();
+    context_.advance_or_throw("write", 0.9);
     return make_files();
   }
 
  private:
+  void check_references() const;
   void place_carried_data();
   void encode_meshes();
   void place_meshes();
@@ -141,7 +82,6 @@ class Writer {
   void make_json_only();
   Json root_object();
   Json buffer_list() const;
-  void add_extension_lists(Json& root) const;
   GltfOutput make_files();
 
   const Model& model_;
@@ -157,6 +97,23 @@ class Writer {
   Json lists_ = Json::object();  // arrays of the root object by name
   std::vector<OutputFile> side_files_;
 };
+
+/// Readers have checked theirs; a model made in memory may be wrong.
+void Writer::check_references() const {
+  const auto check = [](int index, std::size_t count, const char* what, const std::string& place) {
+    if (index < 0 || static_cast<std::size_t>(index) < count) return;
+    throw Error(ErrorKind::usage, fmt::format("there is no {} {}", what, index), place);
+  };
+  for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
+    check(model_.nodes[n].mesh, model_.meshes.size(), "mesh", fmt::format("/nodes/{}/mesh", n));
+    check(model_.nodes[n].skin, model_.skins.size(), "skin", fmt::format("/nodes/{}/skin", n));
+  }
+  for (std::size_t a = 0; a < model_.animations.size(); ++a) {
+    for (const AnimationChannel& channel : model_.animations[a].channels) {
+      check(channel.node, model_.nodes.size(), "node", fmt::format("/animations/{}", a));
+    }
+  }
+}
 
 void Writer::place_carried_data() {
   for (const auto& view : model_.carried_buffer_views) buffers_.add_own_view(view);
@@ -374,42 +331,10 @@ Json Writer::buffer_list() const {
   }
   if (buffers_.fallback_bytes > 0) {
     Json buffer = {{"byteLength", buffers_.fallback_bytes}};
-    buffer["extensions"][std::string(kCompression)]["fallback"] = true;
+    buffer["extensions"]["EXT_meshopt_compression"]["fallback"] = true;
     list.push_back(std::move(buffer));
   }
   return list;
-}
-
-void Writer::add_extension_lists(Json& root) const {
-  std::set<std::string> found;
-  find_extensions(root, found);
-  if (quantized_) found.emplace(kQuantization);
-  std::set<std::string> needed;
-  for (const std::string_view name : {kQuantization, kCompression}) {
-    if (found.contains(std::string(name))) needed.emplace(name);
-  }
-  for (const Json& texture : root.value("textures", Json::array())) {
-    if (texture.contains("source")) continue;
-    for (const std::string_view name : kTextureExtensions) {
-      if (find_extension(texture, std::string(name).c_str())) needed.emplace(name);
-    }
-  }
-
-  std::vector<std::string> used, required;
-  for (const std::string& name : model_.extensions_used) {
-    if (found.contains(name) || !contains(kStorageExtensions, name)) used.push_back(name);
-  }
-  for (const std::string& name : found) {
-    if (!contains(used, name)) used.push_back(name);
-  }
-  for (const std::string& name : model_.extensions_required) {
-    if (contains(used, name)) required.push_back(name);
-  }
-  for (const std::string& name : needed) {
-    if (!contains(required, name)) required.push_back(name);
-  }
-  refresh(root, "extensionsUsed", used, Json::array());
-  refresh(root, "extensionsRequired", required, Json::array());
 }
 
 Json Writer::root_object() {
@@ -431,7 +356,7 @@ Json Writer::root_object() {
   for (auto& [key, value] : read.items()) {
     if (!root.contains(key)) root[key] = value;
   }
-  add_extension_lists(root);
+  write_extension_lists(root, model_, quantized_);
   return root;
 }
 
@@ -459,7 +384,11 @@ GltfOutput Writer::make_files() {
 
 GltfOutput write_gltf(const Model& model, bool binary, const std::string& stem, const WriteOptions& options,
                       Context& context) {
-  return gltf::Writer(model, binary, stem, options, context).run();
+  try {
+    return gltf::Writer(model, binary, stem, options, context).run();
+  } catch (const gltf::Json::exception& e) {
+    throw Error(ErrorKind::usage, fmt::format("JSON that an element carries is not glTF: {}", e.what()));
+  }
 }
 
 }  // namespace fovea

@@ -84,6 +84,7 @@ struct Reader {
 
 std::vector<png_bytep> rows_of(Image8& image) {
   std::vector<png_bytep> rows;
+  rows.reserve(static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y) rows.push_back(image.at(0, y));
   return rows;
 }
