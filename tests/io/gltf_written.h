@@ -60,9 +60,9 @@ struct Written {
   template <class T>
   std::vector<T> raw(const nlohmann::json& index) const {
     const nlohmann::json &a = accessor(index), &view = view_of(a);
-    static const std::map<std::string, std::size_t> widths = {
+    static const std::map<std::string, std::size_t> kWidths = {
         {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
-    const std::size_t width = widths.at(a.at("type")), count = a.at("count");
+    const std::size_t width = kWidths.at(a.at("type")), count = a.at("count");
     const std::size_t stride = view.value("byteStride", width * sizeof(T));
     const std::size_t begin =
         view.at("byteOffset").get<std::size_t>() + a.value("byteOffset", std::size_t{0});

@@ -21,7 +21,7 @@ struct Expected {
   std::uint32_t components;
   bool closed, seams;
 };
-void PrintTo(const Expected& e, std::ostream* out) { *out << e.name; }
+std::ostream& operator<<(std::ostream& out, const Expected& e) { return out << e.name; }
 
 const Expected kExpected[] = {{"vase", 40'000, 60'000, 3, true, true},
                               {"arm", 20'000, 40'000, 6, true, true},

@@ -21,18 +21,18 @@ CollapseMesh make(const TriMesh& mesh) {
 }
 
 TEST(CollapseMesh, RingsHoldEveryCornerOnce) {
-  for (const auto& [name, source] : test::all_families()) {
-    const CollapseMesh mesh = make(source);
+  for (const test::NamedMesh& family : test::all_families()) {
+    const CollapseMesh mesh = make(family.mesh);
     std::size_t corners = 0;
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
       std::set<std::uint32_t> seen;
       mesh.for_ring(v, [&](std::uint32_t c) {
-        EXPECT_EQ(mesh.vertex(c), v) << name;
-        EXPECT_TRUE(seen.insert(c).second) << name;
+        EXPECT_EQ(mesh.vertex(c), v) << family.name;
+        EXPECT_TRUE(seen.insert(c).second) << family.name;
       });
       corners += seen.size();
     }
-    EXPECT_EQ(corners, 3 * mesh.faces.size()) << name;
+    EXPECT_EQ(corners, 3 * mesh.faces.size()) << family.name;
   }
 }
 

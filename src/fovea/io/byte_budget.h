@@ -18,8 +18,8 @@ class ByteBudget {
 
   /// Takes `count` × `size` bytes. Throws Error(limit) if that would go beyond the limit.
   void charge(std::uint64_t count, std::uint64_t size, const std::string& place) {
-    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
-    const std::uint64_t bytes = size != 0 && count > most / size ? most : count * size;
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+    const std::uint64_t bytes = size != 0 && count > kMost / size ? kMost : count * size;
     if (bytes > max_ - used_) {
       throw Error(ErrorKind::limit,
                   fmt::format("{} bytes more would exceed the {} bytes that a model may take", bytes, max_),

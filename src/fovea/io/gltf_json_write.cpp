@@ -123,7 +123,7 @@ void refresh_placement(Json& object, const Node& node) {
 Json parse_object(const std::string& text) {
   if (text.empty()) return Json::object();
   Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) throw Error(ErrorKind::internal, "an element carries JSON that is not an object");
+  if (!json.is_object()) throw Error(ErrorKind::usage, "an element carries text that is not a JSON object");
   return json;
 }
 

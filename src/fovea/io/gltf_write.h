@@ -20,6 +20,12 @@ struct GltfOutput {
 /// equal data is stored once. Untouched elements are written from their own JSON. Attributes are
 /// stored as they were read or as `options` say; indices as small as fits. The extension lists are
 /// made anew from what the file uses.
+///
+/// What cannot be stored as it is gets repaired, dropped or kept as floats, and `context` is told: numbers
+/// that are not finite, normals and tangents without direction, colours beyond [0, 1], joint weights, meshes
+/// and parts without triangles (with the animations of their morph targets; only meshes are renumbered for
+/// it), attributes that glTF cannot hold. Throws Error(usage) for a model that refers to what it does not
+/// have or carries text that is not JSON, Error(limit) for a GLB beyond 4 GiB, Error(cancelled).
 GltfOutput write_gltf(const Model& model, bool binary, const std::string& stem, const WriteOptions& options,
                       Context& context);
 

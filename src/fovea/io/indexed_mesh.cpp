@@ -11,6 +11,7 @@
 #include <span>
 
 #include "fovea/base/error.h"
+#include "fovea/io/byte_budget.h"
 #include "fovea/model/key_table.h"
 
 namespace fovea {
@@ -220,7 +221,15 @@ std::size_t IndexedMesh::triangle_count() const {
   return count;
 }
 
-TriMesh weld(IndexedMesh&& mesh, Context& context, const std::string& place) {
+std::uint64_t IndexedMesh::byte_count() const {
+  std::uint64_t numbers = 3 * positions.size() + 2 * uvs.size() + 3 * normals.size();
+  for (const VertexArray& a : attributes) numbers += a.values.size();
+  for (const Group& g : groups) numbers += g.positions.size() + g.uvs.size() + g.normals.size();
+  return 4 * numbers;
+}
+
+TriMesh weld(IndexedMesh&& mesh, const ReadOptions& options, Context& context, const std::string& place) {
+  ByteBudget(options.max_total_bytes).charge(mesh.byte_count(), 1, place);
   if (mesh.triangle_count() == 0) {
     throw Error(ErrorKind::unsupported, "the file has no triangles", place,
                 "point clouds and curves have no surface to simplify");

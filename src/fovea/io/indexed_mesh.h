@@ -28,14 +28,16 @@ struct IndexedMesh {
   std::vector<Group> groups;
 
   std::size_t triangle_count() const;
+  std::uint64_t byte_count() const;
 };
 
 /// Welds (model/weld.h) with one part per group. `source_vertex` has one entry per position, in
 /// their order. Normals come out with length 1; those that have none become the mean of their
 /// triangles' ("bad-normals").
 ///
-/// Throws Error(unsupported) if there is no triangle, and what `weld` throws.
-TriMesh weld(IndexedMesh&& mesh, Context& context, const std::string& place);
+/// Throws Error(unsupported) if there is no triangle, Error(limit) beyond `max_total_bytes`, and what
+/// `weld` throws.
+TriMesh weld(IndexedMesh&& mesh, const ReadOptions& options, Context& context, const std::string& place);
 
 /// Gives the normals of a part length 1; those without a direction become the mean of their
 /// triangles' ("bad-normals"). Indices must be in range.

@@ -58,7 +58,7 @@ void check_filter(const MeshoptStream& s) {
 /// (KHR_meshopt_compression, appendix B, "Filter 4: color").
 template <class Unsigned, class Signed>
 void decode_color(std::byte* data, std::size_t count) {
-  constexpr double top = static_cast<double>(static_cast<Unsigned>(~Unsigned{0}));
+  constexpr double kTop = static_cast<double>(static_cast<Unsigned>(~Unsigned{0}));
   for (std::size_t i = 0; i < count; ++i, data += 4 * sizeof(Unsigned)) {
     Unsigned raw[4];
     std::memcpy(raw, data, sizeof(raw));
@@ -66,7 +66,7 @@ void decode_color(std::byte* data, std::size_t count) {
     const int used = (1 << std::bit_width(static_cast<unsigned>(raw[3]))) - 1;
     const int alpha = raw[3] & (used >> 1);
     const int rgba[4] = {y + co - cg, y + cg, y - co - cg, alpha << 1 | (alpha & 1)};
-    const double scale = used > 0 ? top / used : 0.0;
+    const double scale = used > 0 ? kTop / used : 0.0;
     for (int k = 0; k < 4; ++k) {
       raw[k] = static_cast<Unsigned>(static_cast<std::int64_t>(std::floor(rgba[k] * scale + 0.5)));
     }

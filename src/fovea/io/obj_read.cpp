@@ -32,8 +32,9 @@ struct ObjFile {
 
 class ObjParser {
  public:
-  ObjParser(std::span<const std::byte> bytes, const std::string& place, Context& context)
-      : scan_(bytes, true), place_(place), context_(context), size_(bytes.size()) {}
+  ObjParser(std::span<const std::byte> bytes, const std::string& place, const ReadOptions& options,
+            Context& context)
+      : scan_(bytes, true), place_(place), options_(options), context_(context), size_(bytes.size()) {}
 
   ObjFile run();
 
@@ -56,6 +57,7 @@ class ObjParser {
 
   TextScanner scan_;
   const std::string& place_;
+  const ReadOptions& options_;
   Context& context_;
   std::size_t size_;
   ObjFile file_;
@@ -115,6 +117,7 @@ void ObjParser::read_position() {
   }
   if (count < 3) refuse("a vertex needs three numbers");
   file_.positions.emplace_back(number[0], number[1], number[2]);
+  check_element_count(file_.positions.size(), "vertices", options_, place_);
   // Four numbers: the fourth is a weight of rational surfaces, which says nothing about triangles.
   if (count >= 6) {
     file_.colors.resize(file_.positions.size() - 1, Vec3f{1, 1, 1});
@@ -149,6 +152,7 @@ void ObjParser::read_face() {
     }
     if (!scan_.at_word_end()) refuse("a face has something that is no index");
     file_.corners.push_back(corner);
+    check_element_count(file_.corners.size(), "face corners", options_, place_);
   }
   if (file_.corners.size() - begin < 3) {
     context_.report("small-faces", "faces with fewer than three corners were dropped",
@@ -346,14 +350,12 @@ std::vector<Material> read_materials(const ObjFile& file, const std::vector<std:
 
 Model read_obj(std::span<const std::byte> bytes, const std::filesystem::path& folder,
                const std::string& place, const ReadOptions& options, Context& context) {
-  ObjFile file = ObjParser(bytes, place, context).run();
-  check_element_count(file.positions.size(), "vertices", options, place);
-  check_element_count(file.corners.size(), "face corners", options, place);
+  ObjFile file = ObjParser(bytes, place, options, context).run();
   const std::vector<std::string> names = number_by_use(file);
   Model images;
   TextureLoader textures(images, folder, options, context);
   std::vector<Material> materials = read_materials(file, names, folder, place, options, textures, context);
-  TriMesh surface = weld(make_mesh(std::move(file)), context, place);
+  TriMesh surface = weld(make_mesh(std::move(file)), options, context, place);
 
   Model model = model_of(std::move(surface), std::filesystem::path(place).stem().string());
   model.materials = std::move(materials);

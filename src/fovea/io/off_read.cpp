@@ -157,7 +157,8 @@ bool is_off(std::span<const std::byte> bytes) {
 Model read_off(std::span<const std::byte> bytes, const std::string& place, const ReadOptions& options,
                Context& context) {
   IndexedMesh mesh = OffReader(bytes, place, options, context).run();
-  return model_of(weld(std::move(mesh), context, place), std::filesystem::path(place).stem().string());
+  return model_of(weld(std::move(mesh), options, context, place),
+                  std::filesystem::path(place).stem().string());
 }
 
 }  // namespace fovea

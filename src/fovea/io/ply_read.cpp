@@ -400,7 +400,8 @@ Model read_ply(std::span<const std::byte> bytes, const std::filesystem::path& fo
   const PlyHeader header = read_ply_header(bytes, place);
   IndexedMesh mesh = read_body(bytes, header, options, place, context);
   drop_vertex_uvs(mesh);
-  Model model = model_of(weld(std::move(mesh), context, place), std::filesystem::path(place).stem().string());
+  Model model =
+      model_of(weld(std::move(mesh), options, context, place), std::filesystem::path(place).stem().string());
   add_materials(model, header, folder, options, place, context);
   drop_textures_without_uvs(model);
   return model;

@@ -14,7 +14,7 @@
 namespace fovea {
 
 /// Numbers of a PLY body in binary, one after the other. Throws Error(format) at the end of the data.
-template <bool kSwap>
+template <bool Swap>
 class PlyBinarySource {
  public:
   PlyBinarySource(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& place)
@@ -59,8 +59,8 @@ class PlyBinarySource {
     std::array<std::byte, sizeof(T)> raw;
     std::memcpy(raw.data(), at_, sizeof(T));
     at_ += sizeof(T);
-    constexpr bool reverse = kSwap != (std::endian::native == std::endian::big);
-    if constexpr (reverse && sizeof(T) > 1) std::reverse(raw.begin(), raw.end());
+    constexpr bool kReverse = Swap != (std::endian::native == std::endian::big);
+    if constexpr (kReverse && sizeof(T) > 1) std::reverse(raw.begin(), raw.end());
     return std::bit_cast<T>(raw);
   }
   std::int64_t to_integer(double x) const {

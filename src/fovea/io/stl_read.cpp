@@ -101,7 +101,8 @@ Model read_stl(std::span<const std::byte> bytes, const std::string& place, const
   IndexedMesh::Group& group = mesh.groups.emplace_back();
   group.positions.resize(mesh.positions.size());
   for (std::size_t i = 0; i < group.positions.size(); ++i) group.positions[i] = static_cast<std::uint32_t>(i);
-  return model_of(weld(std::move(mesh), context, place), std::filesystem::path(place).stem().string());
+  return model_of(weld(std::move(mesh), options, context, place),
+                  std::filesystem::path(place).stem().string());
 }
 
 }  // namespace fovea

@@ -28,9 +28,9 @@ int hex_digit(char c) {
 constexpr std::array<std::int8_t, 256> make_base64_table() {
   std::array<std::int8_t, 256> table{};
   for (auto& value : table) value = -2;
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    table[static_cast<unsigned char>(digits[i])] = static_cast<std::int8_t>(i);
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < kDigits.size(); ++i) {
+    table[static_cast<unsigned char>(kDigits[i])] = static_cast<std::int8_t>(i);
   }
   table['-'] = 62;
   table['_'] = 63;
@@ -39,7 +39,7 @@ constexpr std::array<std::int8_t, 256> make_base64_table() {
 }
 
 std::vector<std::byte> decode_base64(std::string_view text) {
-  static constexpr auto table = make_base64_table();
+  static constexpr auto kTable = make_base64_table();
   const std::size_t end = text.find_last_not_of("= \t\r\n");
   text = text.substr(0, end == std::string_view::npos ? 0 : end + 1);
   std::vector<std::byte> bytes;
@@ -47,7 +47,7 @@ std::vector<std::byte> decode_base64(std::string_view text) {
   std::uint32_t bits = 0;
   int bit_count = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const int digit = table[static_cast<unsigned char>(text[i])];
+    const int digit = kTable[static_cast<unsigned char>(text[i])];
     if (digit == -1) continue;
     if (digit < 0) fail(fmt::format("character {} of the base64 data is not a base64 digit", i));
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
@@ -83,9 +83,9 @@ std::filesystem::path utf8_path(const std::string& text) {
 }  // namespace
 
 bool is_data_uri(std::string_view uri) {
-  constexpr std::string_view scheme = "data:";
-  return uri.size() >= scheme.size() &&
-         std::equal(scheme.begin(), scheme.end(), uri.begin(),
+  constexpr std::string_view kScheme = "data:";
+  return uri.size() >= kScheme.size() &&
+         std::equal(kScheme.begin(), kScheme.end(), uri.begin(),
                     [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
 }
 

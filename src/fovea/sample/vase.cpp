@@ -15,14 +15,14 @@ constexpr double kPi = std::numbers::pi;
 /// Half of the section through the axis, (radius, height): under the foot, up the outside, over the
 /// lip and down the inside.
 const Curve& section() {
-  static const Curve curve({{0, 0.03},      {0.12, 0.03},   {0.20, 0.022},  {0.225, 0.0},   {0.243, 0.004},
-                            {0.248, 0.03},  {0.215, 0.07},  {0.203, 0.10},  {0.270, 0.22},  {0.385, 0.42},
-                            {0.450, 0.64},  {0.455, 0.80},  {0.400, 0.98},  {0.270, 1.11},  {0.185, 1.19},
-                            {0.165, 1.28},  {0.175, 1.38},  {0.215, 1.455}, {0.262, 1.487}, {0.274, 1.500},
-                            {0.264, 1.511}, {0.244, 1.506}, {0.190, 1.455}, {0.146, 1.37},  {0.136, 1.28},
-                            {0.156, 1.19},  {0.240, 1.10},  {0.372, 0.97},  {0.427, 0.80},  {0.422, 0.64},
-                            {0.357, 0.42},  {0.240, 0.23},  {0.10, 0.14},   {0, 0.13}});
-  return curve;
+  static const Curve kCurve({{0, 0.03},      {0.12, 0.03},   {0.20, 0.022},  {0.225, 0.0},   {0.243, 0.004},
+                             {0.248, 0.03},  {0.215, 0.07},  {0.203, 0.10},  {0.270, 0.22},  {0.385, 0.42},
+                             {0.450, 0.64},  {0.455, 0.80},  {0.400, 0.98},  {0.270, 1.11},  {0.185, 1.19},
+                             {0.165, 1.28},  {0.175, 1.38},  {0.215, 1.455}, {0.262, 1.487}, {0.274, 1.500},
+                             {0.264, 1.511}, {0.244, 1.506}, {0.190, 1.455}, {0.146, 1.37},  {0.136, 1.28},
+                             {0.156, 1.19},  {0.240, 1.10},  {0.372, 0.97},  {0.427, 0.80},  {0.422, 0.64},
+                             {0.357, 0.42},  {0.240, 0.23},  {0.10, 0.14},   {0, 0.13}});
+  return kCurve;
 }
 // Where charts meet, as parameters of the section.
 constexpr double kFoot = 4, kLipOutside = 18, kLipInside = 21, kFloor = 33;
@@ -78,18 +78,18 @@ Sheet underside(const std::vector<Ring>& wall, int columns, const Chart& chart) 
 
 /// A bent tube from the neck to the shoulder, closed inside of the wall; `side` is -1 or 1.
 Sheet handle(double side, double detail, const Chart& chart) {
-  static const Curve spine({{0.163, 1.325},
-                            {0.230, 1.364},
-                            {0.330, 1.365},
-                            {0.420, 1.280},
-                            {0.440, 1.140},
-                            {0.420, 1.030},
-                            {0.397, 0.985}});
+  static const Curve kSpine({{0.163, 1.325},
+                             {0.230, 1.364},
+                             {0.330, 1.365},
+                             {0.420, 1.280},
+                             {0.440, 1.140},
+                             {0.420, 1.030},
+                             {0.397, 0.985}});
   Sheet sheet;
   sheet.columns = scaled(20, detail);
   const int length = scaled(64, detail);
   sheet.rows = length + 2;
-  const std::vector<Vec2d> points = spine.even(0, 6, length);
+  const std::vector<Vec2d> points = kSpine.even(0, 6, length);
   sheet.position = [points, side, length, columns = sheet.columns](int column, int row) {
     const int i = std::clamp(row - 1, 0, length);
     const auto at = [&](int k) { return points[static_cast<std::size_t>(std::clamp(k, 0, length))]; };
