@@ -63,6 +63,7 @@ class Engine {
   void fill_queue();
   StopReason loop();
   void try_edge(std::uint32_t e);
+  bool is_dearer(std::uint32_t e, double price);
   bool is_legal(std::uint32_t a, std::uint32_t b, Vec3d p);
   void take_or_requeue(std::uint32_t e, const Quadric& q, const Candidate& where);
   void try_vanish(std::uint32_t component);
@@ -81,7 +82,7 @@ class Engine {
   void drop_coincident_faces(std::uint32_t b);
   void drop_face(std::uint32_t f);
   void drop_unused_edges();
-  void update_costs(std::uint32_t b);
+  void revive_edges(std::uint32_t b);
   void finish_step(CollapseStep step, double error);
 
   CollapseState& state_;
@@ -128,12 +129,20 @@ void Engine::subtract_channel(Quadric& q, const Channel& channel, std::uint32_t 
   for (std::uint32_t root = 0; root < scratch.size(); ++root) {
     if (scratch[root].root != root) continue;
     std::fill(total, total + stride, 0.0);
+    const std::uint32_t held = scratch.held_value(channel, a, b, root);
     for (std::size_t i = root; i < scratch.size(); ++i) {
       if (scratch[i].root != root) continue;
       const double* qi = channel.value_quadric(scratch[i].value);
       for (std::size_t k = 0; k < stride; ++k) total[k] += qi[k];
     }
-    reduce(q, total, width);
+    if (held == kInvalid) {
+      reduce(q, total, width);
+    } else {
+      const double scale = channel.scale[state_.slot_of_vertex(a)];
+      const float* value = channel.value(held);
+      const double scaled[2] = {scale * value[0], scale * value[1]};
+      hold(q, total, width, scaled);
+    }
   }
 }
 
@@ -218,13 +227,14 @@ StopReason Engine::loop() {
 /// Collapses edge e if that is legal at about the cost that it is queued for; else puts it back.
 void Engine::try_edge(std::uint32_t e) {
   const auto [a, b] = mesh_.edges[e];
+  const Quadric q = edge_quadric(a, b, classes_);
+  std::array<Candidate, 4> places;
+  places[0] = best_place(a, b, q);
+  if (is_dearer(e, places[0].cost)) return;
   if (!legality_.look_at(a, b) && (legality_.topology() == Block::last || options_.keep_topology)) {
     put_off(e);
     return;
   }
-  const Quadric q = edge_quadric(a, b, classes_);
-  std::array<Candidate, 4> places;
-  places[0] = best_place(a, b, q);
   if (is_legal(a, b, places[0].position)) {
     take_or_requeue(e, q, places[0]);
     return;
@@ -244,13 +254,20 @@ bool Engine::is_legal(std::uint32_t a, std::uint32_t b, Vec3d p) {
   return legality_.texture(a, b, merge_);
 }
 
+/// Whether edge e costs more than it is queued for; then it goes back into the queue at its price.
+bool Engine::is_dearer(std::uint32_t e, double price) {
+  if (price <= queue_.cost_floor(e) * kTolerance + std::numeric_limits<float>::min()) return false;
+  if (std::isfinite(price)) {
+    queue_.set(e, price);
+  } else {
+    queue_.remove(e);
+  }
+  return true;
+}
+
 /// A collapse that is legal is carried out if it costs about what it was queued for.
 void Engine::take_or_requeue(std::uint32_t e, const Quadric& q, const Candidate& where) {
-  const double price = where.cost * (legality_.topology() == Block::none ? 1 : kTopologyPenalty);
-  if (price > queue_.cost_floor(e) * kTolerance + std::numeric_limits<float>::min()) {
-    queue_.set(e, price);
-    return;
-  }
+  if (is_dearer(e, where.cost * (legality_.topology() == Block::none ? 1 : kTopologyPenalty))) return;
   const double error = std::sqrt(where.cost / std::max(q.weight, 1e-30));
   if (error > max_error_) {
     over_error_ = true;
@@ -319,8 +336,8 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
 
   mesh_.vertices[b].position = where.position;
   mesh_.vertices[b].quadric += mesh_.vertices[a].quadric;
-  mesh_.vertices[b].locked |= mesh_.vertices[a].locked;
-  update_costs(b);
+  if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
+  revive_edges(b);
 
   CollapseStep step;
   step.mesh = m;
@@ -378,16 +395,7 @@ void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
     take_over(CollapseMesh::previous(c), mesh_.vertex(CollapseMesh::previous(c)));
   }
   for (const std::uint32_t c : ring_) mesh_.faces[c / 3].vertex[c % 3] = b;
-  if (ring_.empty()) return;
-  // Splice the two circles.
-  std::uint32_t &first_a = mesh_.vertices[a].first_corner, &first_b = mesh_.vertices[b].first_corner;
-  if (first_b == kInvalid) {
-    first_b = first_a;
-  } else {
-    std::swap(mesh_.faces[first_a / 3].next_corner[first_a % 3],
-              mesh_.faces[first_b / 3].next_corner[first_b % 3]);
-  }
-  first_a = kInvalid;
+  mesh_.join_rings(a, b);
 }
 
 /// After a collapse that pinches the surface two triangles can lie on each other. Back to back they
@@ -421,7 +429,7 @@ void Engine::drop_unused_edges() {
     if (!mesh_.edge_alive(e)) continue;
     // Scan from the end that has fewer triangles: a vertex that was merged away has none.
     const auto [v, w] = mesh_.edges[e];
-    const std::uint32_t from = mesh_.vertices[w].first_corner == kInvalid ? w : v;
+    const std::uint32_t from = mesh_.vertices[w].ring_size < mesh_.vertices[v].ring_size ? w : v;
     bool used = false;
     mesh_.for_ring(from, [&](std::uint32_t c) {
       used = used || mesh_.edge(c) == e || mesh_.edge(CollapseMesh::previous(c)) == e;
@@ -432,23 +440,19 @@ void Engine::drop_unused_edges() {
   }
 }
 
-/// Costs the edges at b again; those that had been given up get another chance.
-void Engine::update_costs(std::uint32_t b) {
-  const std::uint32_t mark = mesh_.new_mark();
-  const auto update = [&](std::uint32_t e, std::uint32_t w) {
-    if (mesh_.vertices[w].mark == mark) return;
-    mesh_.vertices[w].mark = mark;
+/// Gives edges at b that were refused another chance, at their present cost. The others keep the cost
+/// that they have in the queue: a merged vertex only adds to it, so it is a lower bound, and `try_edge`
+/// looks again when it comes up.
+void Engine::revive_edges(std::uint32_t b) {
+  const auto revive = [&](std::uint32_t e, std::uint32_t w) {
+    if (tries_[e] == 0) return;
     tries_[e] = 0;
     const double cost = best_place(b, w, edge_quadric(b, w, classes_)).cost;
-    if (std::isfinite(cost)) {
-      queue_.set(e, cost);
-    } else {
-      queue_.remove(e);
-    }
+    if (std::isfinite(cost)) queue_.set(e, cost);
   };
   mesh_.for_ring(b, [&](std::uint32_t c) {
-    update(mesh_.edge(c), mesh_.vertex(CollapseMesh::next(c)));
-    update(mesh_.edge(CollapseMesh::previous(c)), mesh_.vertex(CollapseMesh::previous(c)));
+    revive(mesh_.edge(c), mesh_.vertex(CollapseMesh::next(c)));
+    revive(mesh_.edge(CollapseMesh::previous(c)), mesh_.vertex(CollapseMesh::previous(c)));
   });
 }
 

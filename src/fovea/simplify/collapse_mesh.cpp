@@ -1,6 +1,7 @@
 #include "fovea/simplify/collapse_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <utility>
 
@@ -8,18 +9,7 @@ namespace fovea {
 
 void CollapseMesh::link() {
   live_faces = faces.size();
-  // Rings: each new corner goes in after the vertex's first one.
-  for (std::uint32_t c = 0; c < 3 * faces.size(); ++c) {
-    std::uint32_t& own = faces[c / 3].next_corner[c % 3];
-    std::uint32_t& first = vertices[vertex(c)].first_corner;
-    if (first == kInvalid) {
-      first = own = c;
-    } else {
-      std::uint32_t& after = faces[first / 3].next_corner[first % 3];
-      own = after;
-      after = c;
-    }
-  }
+  link_rings();
   // Edges: each is numbered at its smaller end.
   edges.clear();
   edges.reserve(faces.size() * 3 / 2 + 3);
@@ -50,17 +40,64 @@ std::uint32_t CollapseMesh::new_mark() {
   return last_mark_ += 4;
 }
 
-void CollapseMesh::unlink_corner(std::uint32_t c) {
-  const auto next_of = [&](std::uint32_t k) -> std::uint32_t& { return faces[k / 3].next_corner[k % 3]; };
-  std::uint32_t& first = vertices[vertex(c)].first_corner;
-  if (next_of(c) == c) {
-    first = kInvalid;
-    return;
+void CollapseMesh::link_rings() {
+  for (const CollapseFace& face : faces) {
+    for (const std::uint32_t v : face.vertex) ++vertices[v].ring_size;
   }
-  std::uint32_t before = c;
-  while (next_of(before) != c) before = next_of(before);
-  next_of(before) = next_of(c);
-  if (first == c) first = before;
+  std::uint32_t end = 0;
+  for (CollapseVertex& v : vertices) {
+    v.ring_begin = end;
+    end += std::bit_ceil(std::uint32_t{v.ring_size});
+    v.ring_size = 0;
+  }
+  corners.assign(end, kInvalid);
+  for (std::uint32_t c = 0; c < 3 * faces.size(); ++c) {
+    CollapseVertex& v = vertices[vertex(c)];
+    corners[v.ring_begin + v.ring_size++] = c;
+  }
+  free_room_.assign(32, kInvalid);
+}
+
+void CollapseMesh::unlink_corner(std::uint32_t c) {
+  CollapseVertex& v = vertices[vertex(c)];
+  std::uint32_t* const begin = corners.data() + v.ring_begin;
+  std::uint32_t* const last = begin + v.ring_size - 1;
+  *std::find(begin, last, c) = *last;
+  --v.ring_size;
+}
+
+void CollapseMesh::join_rings(std::uint32_t a, std::uint32_t b) {
+  CollapseVertex &from = vertices[a], &to = vertices[b];
+  const std::uint32_t size = from.ring_size + to.ring_size;
+  if (size > std::bit_ceil(std::uint32_t{to.ring_size})) {
+    const std::uint32_t begin = take_room(size);
+    std::copy_n(corners.begin() + to.ring_begin, to.ring_size, corners.begin() + begin);
+    give_room(to.ring_begin, to.ring_size);
+    to.ring_begin = begin;
+  }
+  std::copy_n(corners.begin() + from.ring_begin, from.ring_size, corners.begin() + to.ring_begin + to.ring_size);
+  to.ring_size = size;
+  give_room(from.ring_begin, from.ring_size);
+  from.ring_size = 0;
+}
+
+std::uint32_t CollapseMesh::take_room(std::uint32_t size) {
+  std::uint32_t& free = free_room_[static_cast<std::size_t>(std::bit_width(size - 1))];
+  auto begin = static_cast<std::uint32_t>(corners.size());
+  if (free == kInvalid) {
+    corners.resize(corners.size() + std::bit_ceil(size));
+  } else {
+    begin = free;
+    free = corners[begin];
+  }
+  return begin;
+}
+
+void CollapseMesh::give_room(std::uint32_t begin, std::uint32_t size) {
+  if (size == 0) return;
+  std::uint32_t& free = free_room_[static_cast<std::size_t>(std::bit_width(size - 1))];
+  corners[begin] = free;
+  free = begin;
 }
 
 std::vector<std::uint8_t> count_edge_faces(const CollapseMesh& mesh) {

@@ -11,36 +11,37 @@
 
 namespace fovea {
 
-/// A triangle of the engine with all links that start in it, together because they are read together.
+/// A triangle of the engine.
 struct CollapseFace {
-  std::array<std::uint32_t, 3> vertex;       ///< kInvalid first if the face is gone.
-  std::array<std::uint32_t, 3> next_corner;  ///< The next corner in the ring of the same vertex.
-  std::array<std::uint32_t, 3> edge;         ///< Edge from this corner's vertex to the next corner's.
+  std::array<std::uint32_t, 3> vertex;  ///< kInvalid first if the face is gone.
+  std::array<std::uint32_t, 3> edge;    ///< Edge from this corner's vertex to the next corner's.
 };
 
 /// A vertex of the engine. Two cache lines, the first with what a look at the neighbourhood needs.
 struct alignas(64) CollapseVertex {
-  Vec3d position;                         ///< In units of the scene's diagonal, around the mesh's centre.
-  std::uint32_t first_corner = kInvalid;  ///< Any corner of the ring; kInvalid without triangles.
-  std::uint32_t mark = 0;                 ///< Scratch of whoever looks around; see CollapseMesh::new_mark.
-  std::uint32_t mark_count = 0;           ///< Scratch that holds while `mark` does.
-  bool locked = false;                    ///< Must stay where it is.
+  Vec3d position;                    ///< In units of the scene's diagonal, around the mesh's centre.
+  std::uint32_t ring_begin = 0;      ///< Where its ring begins in CollapseMesh::corners.
+  std::uint32_t ring_size : 31 = 0;  ///< Corners in its ring; 0 without triangles.
+  std::uint32_t locked : 1 = 0;      ///< Must stay where it is.
+  std::uint32_t mark = 0;            ///< Scratch of whoever looks around; see CollapseMesh::new_mark.
+  std::uint32_t mark_count = 0;      ///< Scratch that holds while `mark` does.
   Quadric quadric;
 };
 
 /// Triangles that can lose edges: the connectivity of the collapse engine.
 ///
 /// Nothing is assumed of the surface; an edge is a pair of vertices with any number of triangles. The
-/// corners at a vertex form a ring (a circular list, in no geometric order); corner i of triangle f is
-/// 3 f + i.
+/// corners at a vertex form its ring (a list in no geometric order, contiguous so that all its triangles
+/// can be fetched at once); corner i of triangle f is 3 f + i.
 ///
-///            next(c)                    ring of v: its corners, linked by next_corner
+///            next(c)                    ring of v: its corners
 ///              /\                       edge of c: v – w
 ///   v at c ---/--\                      edge of previous(c): u – v
 struct CollapseMesh {
   std::vector<CollapseFace> faces;                  ///< [#F]
   std::vector<CollapseVertex> vertices;             ///< [#V]
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< [#E], ends; a removed edge has kInvalid first.
+  std::vector<std::uint32_t> corners;               ///< The rings, with gaps.
   std::size_t live_faces = 0;
 
   /// Builds rings and edges from `vertex` of all faces, which are distinct. O(#F).
@@ -54,21 +55,20 @@ struct CollapseMesh {
   bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
   bool edge_alive(std::uint32_t e) const { return edges[e][0] != kInvalid; }
 
+  /// The corners at v. Valid until a ring changes.
+  std::span<const std::uint32_t> ring(std::uint32_t v) const {
+    return {corners.data() + vertices[v].ring_begin, vertices[v].ring_size};
+  }
   /// Calls f(corner) for the corners at v.
   template <class F>
   void for_ring(std::uint32_t v, F&& f) const {
-    const std::uint32_t first = vertices[v].first_corner;
-    if (first == kInvalid) return;
-    std::uint32_t c = first;
-    do {
-      const std::uint32_t following = faces[c / 3].next_corner[c % 3];
-      f(c);
-      c = following;
-    } while (c != first);
+    for (const std::uint32_t c : ring(v)) f(c);
   }
 
   /// Takes corner c out of the ring of its vertex.
   void unlink_corner(std::uint32_t c);
+  /// Adds the corners at a to those at b; a has none from then on. The faces' vertices stay.
+  void join_rings(std::uint32_t a, std::uint32_t b);
   /// Marks a face as removed; its corners must be out of the rings already.
   void kill_face(std::uint32_t f) {
     faces[f].vertex[0] = kInvalid;
@@ -79,7 +79,13 @@ struct CollapseMesh {
   std::uint32_t new_mark();
 
  private:
+  void link_rings();
+  /// Room for rings comes in powers of two: a ring has room for at least bit_ceil(its size).
+  std::uint32_t take_room(std::uint32_t size);
+  void give_room(std::uint32_t begin, std::uint32_t size);
+
   std::uint32_t last_mark_ = 0;
+  std::vector<std::uint32_t> free_room_;  // [log2 of room], first of a list linked through `corners`
 };
 
 /// Faces on each edge [#E], saturated at 3.

@@ -12,19 +12,18 @@ namespace fovea {
 ///
 /// Costs are sorted into buckets by the leading 16 bits of their float (steps below 0.8 %); within a
 /// bucket the item that came last goes first. The order depends on nothing but the sequence of calls.
-/// 12 bytes per item.
+/// A bucket is a stack in which entries that have moved elsewhere are left until they come up, so that
+/// a change touches one place in memory. 2 bytes per item and 4 per entry.
 class CollapseQueue {
  public:
-  explicit CollapseQueue(std::size_t items) : links_(items), head_(kBuckets, kInvalid) {}
+  explicit CollapseQueue(std::size_t items) : bucket_(items, kNone), stacks_(kBuckets) {}
 
-  bool contains(std::uint32_t item) const { return links_[item].bucket != kNone; }
+  bool contains(std::uint32_t item) const { return bucket_[item] != kNone; }
   /// Puts an item in, or moves it to its new cost.
-  void set(std::uint32_t item, double cost) { link(item, bucket_of(cost)); }
-  void remove(std::uint32_t item) {
-    if (contains(item)) unlink(item);
-  }
+  void set(std::uint32_t item, double cost);
+  void remove(std::uint32_t item) { bucket_[item] = kNone; }
   /// Lowest cost of `item`'s bucket; the item must be in the queue.
-  float cost_floor(std::uint32_t item) const { return floor_of(links_[item].bucket); }
+  float cost_floor(std::uint32_t item) const { return floor_of(bucket_[item]); }
   /// An item of the lowest bucket, or kInvalid when empty. The item stays in.
   std::uint32_t first();
 
@@ -38,17 +37,25 @@ class CollapseQueue {
   static constexpr std::uint16_t kNone = 0xFFFF;
   static constexpr std::size_t kBuckets = 0x8000;  // the sign bit is never set
 
-  void link(std::uint32_t item, std::uint16_t bucket);
-  void unlink(std::uint32_t item);
-
-  struct Link {
-    std::uint32_t next = kInvalid, previous = kInvalid;  // within the bucket; the head has no previous
-    std::uint16_t bucket = kNone;
+  /// A piece of a stack: blocks are handed on from emptied stacks to growing ones.
+  struct Block {
+    std::uint32_t below = kInvalid;  // next block of the same stack, or of the list of free ones
+    std::uint32_t items[31];
   };
-  std::vector<Link> links_;
-  std::vector<std::uint32_t> head_;
-  std::uint64_t occupied_[kBuckets / 64] = {};
-  std::size_t lowest_word_ = kBuckets / 64;  // no occupied bucket below this word
+  struct Stack {
+    std::uint32_t top = kInvalid;  // block
+    std::uint32_t count = 0;       // entries in the top block
+  };
+
+  void push(Stack& stack, std::uint32_t item);
+  void pop(Stack& stack);
+
+  std::vector<std::uint16_t> bucket_;  // [#items]
+  std::vector<Stack> stacks_;          // [kBuckets]
+  std::vector<Block> blocks_;
+  std::uint32_t free_block_ = kInvalid;
+  std::uint64_t occupied_[kBuckets / 64] = {};  // stacks that are not empty
+  std::size_t lowest_word_ = kBuckets / 64;     // no occupied bucket below this word
 };
 
 }  // namespace fovea

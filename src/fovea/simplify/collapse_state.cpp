@@ -287,7 +287,7 @@ void Builder::make_locks() {
       const float w = importance_[m]->values()[v];
       const std::size_t at = state_.slots[m].first_vertex + v;
       if (std::isinf(w)) {
-        state_.mesh.vertices[at].locked = true;
+        state_.mesh.vertices[at].locked = 1;
       } else {
         importance_weight_[at] = w;
       }
@@ -296,7 +296,7 @@ void Builder::make_locks() {
   if (!options_.lock_boundary) return;
   for (std::size_t e = 0; e < edge_faces_.size(); ++e) {
     if (edge_faces_[e] != 1) continue;
-    for (const std::uint32_t v : state_.mesh.edges[e]) state_.mesh.vertices[v].locked = true;
+    for (const std::uint32_t v : state_.mesh.edges[e]) state_.mesh.vertices[v].locked = 1;
   }
 }
 

@@ -82,6 +82,16 @@ inline void reduce(Quadric& q, const double* attribute, int width) {
   }
 }
 
+/// Adds Σ_k −2 s_k (G_k·p + D_k) + W s_k²: the value of each component stays s_k wherever p is.
+inline void hold(Quadric& q, const double* attribute, int width, const double* s) {
+  const double weight = attribute[4 * width];
+  for (int k = 0; k < width; ++k) {
+    const double* g = attribute + 4 * k;
+    q.bx -= s[k] * g[0], q.by -= s[k] * g[1], q.bz -= s[k] * g[2];
+    q.c += s[k] * (weight * s[k] - 2 * g[3]);
+  }
+}
+
 /// The best value of component k at p.
 inline double fitted_value(const double* attribute, int width, int k, Vec3d p) {
   const double* g = attribute + 4 * k;

@@ -26,6 +26,12 @@ class ValueClasses {
 
   std::size_t size() const { return entries_.size(); }
   const Entry& operator[](std::size_t i) const { return entries_[i]; }
+  /// For texture coordinates, the value that class `root` must keep so that no texels from beyond its
+  /// chart come in: a value that does not join stays; an inner vertex that joins a seam takes the
+  /// seam's value; where a seam's sides join they take the value at its end. kInvalid if the class may
+  /// move: inside a chart, or along a seam.
+  std::uint32_t held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,
+                           std::uint32_t root) const;
   /// Index of the entry of a value that belongs to a or b.
   std::size_t index_of(std::uint32_t value) const;
 

@@ -18,12 +18,14 @@ void ValueMerge::plan(std::uint32_t a, std::uint32_t b, Vec3d p) {
     plan.classes.find(state_, channel, a, b);
     plan.values.resize(plan.classes.size() * static_cast<std::size_t>(channel.width));
     for (std::uint32_t root = 0; root < plan.classes.size(); ++root) {
-      if (plan.classes[root].root == root) plan_class(channel, plan, root);
+      if (plan.classes[root].root != root) continue;
+      const std::uint32_t held = plan.classes.held_value(channel, a, b, root);
+      plan_class(channel, plan, root, held);
     }
   }
 }
 
-void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t root) {
+void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t root, std::uint32_t held) {
   const float *at_a = nullptr, *at_b = nullptr;
   for (std::size_t i = root; i < plan.classes.size(); ++i) {
     const auto& entry = plan.classes[i];
@@ -34,6 +36,10 @@ void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t ro
   if (at_b == nullptr) at_b = at_a;
   const auto width = static_cast<std::size_t>(channel.width);
   float* out = plan.values.data() + root * width;
+  if (held != kInvalid) {
+    std::copy_n(channel.value(held), width, out);
+    return;
+  }
 
   if (channel.kind == ChannelKind::nearest || placement_ == Placement::half_edge) {
     std::copy_n(along_ < 0.5f ? at_a : at_b, width, out);
@@ -45,7 +51,8 @@ void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t ro
   }
   for (std::size_t k = 0; k < width; ++k) out[k] = at_a[k] + (at_b[k] - at_a[k]) * along_;
   if (channel.semantic == Semantic::tangent) out[3] = (along_ < 0.5f ? at_a : at_b)[3];
-  if (channel.kind == ChannelKind::fitted) fit(channel, plan, root, out);
+  if (channel.kind == ChannelKind::fitted && !(channel.is_uv() && plan.classes.size() > 2))
+    fit(channel, plan, root, out);
 }
 
 void ValueMerge::fit(const Channel& channel, const Plan& plan, std::uint32_t root, float* out) {

@@ -32,7 +32,7 @@ class ValueMerge {
     ValueClasses classes;
     std::vector<float> values;  // [#classes entries × width], set at roots
   };
-  void plan_class(const Channel& channel, Plan& plan, std::uint32_t root);
+  void plan_class(const Channel& channel, Plan& plan, std::uint32_t root, std::uint32_t held);
   void fit(const Channel& channel, const Plan& plan, std::uint32_t root, float* out);
   void mix_skin(const Channel& channel, const float* at_a, const float* at_b, float* out) const;
   void record_class(const Channel& channel, const Plan& plan, std::uint32_t root, std::uint32_t kept,
