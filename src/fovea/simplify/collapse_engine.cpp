@@ -18,7 +18,7 @@ namespace fovea {
 namespace {
 
 /// A collapse that breaks topology counts as this much dearer than one that does not.
-constexpr double kTopologyPenalty = 8;
+constexpr double kTopologyPenalty = 2;
 /// After a refusal an edge is tried again when costs have risen by this factor ...
 constexpr double kRetryFactor = 2;
 /// ... so often, until a change around it gives it a new life.

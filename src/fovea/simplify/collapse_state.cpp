@@ -11,8 +11,11 @@ namespace {
 
 // Lengths are in units of the scene's diagonal.
 
+/// A texture that slides by some length counts as a surface that moves by this fraction of it: slides
+/// hide in most textures, while shape shows in outline and shading.
+constexpr double kSlide = 0.018;
 /// A normal that turns by one radian counts as a surface that moves by this much.
-constexpr double kNormalLength = 0.02;
+constexpr double kNormalLength = 0.009;
 /// A colour that changes from black to white counts as a surface that moves by this much.
 constexpr double kColorLength = 0.02;
 /// Attributes that change by more than their range over this length do not change faster for the
@@ -22,8 +25,8 @@ constexpr double kGradientLength = 0.01;
 /// positions defined on flat regions and orders their edges by length.
 constexpr double kRegularization = 1e-4;
 /// Weights of the planes through boundary and seam edges for an option value of 1.
-constexpr double kBoundaryWeight = 4;
-constexpr double kSeamWeight = 1;
+constexpr double kBoundaryWeight = 1;
+constexpr double kSeamWeight = 0.3;
 /// Weight of a component that vanishes against a surface of its area that moves by its radius.
 constexpr double kVanishWeight = 1;
 
@@ -148,7 +151,7 @@ double Builder::option_weight(const Channel& channel) const {
 /// stretch: where texels are crowded a slide is no worse than it looks on the surface.
 double Builder::steepness_limit(const Channel& channel, double scale) const {
   if (channel.is_position_morph) return 4;
-  if (channel.is_uv()) return 2 * option_weight(channel);
+  if (channel.is_uv()) return 2 * kSlide * kSlide * option_weight(channel);
   return std::pow(2 * scale / kGradientLength, 2);
 }
 
@@ -327,7 +330,7 @@ void Builder::find_single_values(Channel& channel) const {
 }
 
 /// From the layer's units to lengths. Texture coordinates: by the mean stretch of the mesh, so that
-/// one unit of length on the surface is one unit of error, whatever the texture's resolution.
+/// the same slide on the surface is the same error, whatever the texture's resolution.
 void Builder::scale_channel(Channel& channel) const {
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const double weight = std::sqrt(option_weight(channel));
@@ -350,7 +353,7 @@ void Builder::scale_channel(Channel& channel) const {
         area += area_[f];
         area_uv += 0.5 * std::abs(cross(uv(1) - uv(0), uv(2) - uv(0)));
       }
-      length = area_uv > 0 ? std::sqrt(area / area_uv) : 0;
+      length = area_uv > 0 ? kSlide * std::sqrt(area / area_uv) : 0;
     }
     channel.scale[m] = weight * length;
   }
