@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fovea/base/parallel.h"
+#include "fovea/base/prefetch.h"
 #include "fovea/simplify/collapse_queue.h"
 #include "fovea/simplify/legality.h"
 #include "fovea/simplify/value_classes.h"
@@ -25,6 +26,8 @@ constexpr double kRetryFactor = 2;
 constexpr std::uint8_t kMaxRetries = 12;
 /// A legal position may cost this much more than the edge was queued for; else the edge goes back.
 constexpr double kTolerance = 1.1;
+/// Items that are taken from the queue together, so that their memory is fetched together.
+constexpr std::size_t kBatch = 16;
 /// Optimal positions further from the edge than this many edge lengths are not believed.
 constexpr double kReach = 2;
 
@@ -32,6 +35,12 @@ constexpr double kReach = 2;
 struct Candidate {
   double cost = std::numeric_limits<double>::infinity();
   Vec3d position;
+};
+
+/// An edge or component that was taken out of the queue.
+struct Due {
+  std::uint32_t item = kInvalid;
+  double cost = 0;  ///< What it was queued for.
 };
 
 class Engine {
@@ -62,12 +71,15 @@ class Engine {
  private:
   void fill_queue();
   StopReason loop();
-  void try_edge(std::uint32_t e);
-  bool is_dearer(std::uint32_t e, double price);
+  void take_batch();
+  void drop_dearer();
+  void fetch_surroundings() const;
+  void try_edge(const Due& due);
+  bool is_dearer(const Due& due, double price);
   bool is_legal(std::uint32_t a, std::uint32_t b, Vec3d p);
-  void take_or_requeue(std::uint32_t e, const Quadric& q, const Candidate& where);
+  void take_or_requeue(const Due& due, const Quadric& q, const Candidate& where);
   void try_vanish(std::uint32_t component);
-  void put_off(std::uint32_t e);
+  void put_off(const Due& due);
   void count_blocked();
 
   Quadric edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scratch) const;
@@ -80,8 +92,8 @@ class Engine {
   void merge_edges(std::uint32_t a, std::uint32_t b);
   void drop_shared_faces(std::uint32_t a, std::uint32_t b);
   void drop_coincident_faces(std::uint32_t b);
+  void leave_edge(std::uint32_t e);
   void drop_face(std::uint32_t f);
-  void drop_unused_edges();
   void revive_edges(std::uint32_t b);
   void finish_step(CollapseStep step, double error);
 
@@ -97,12 +109,13 @@ class Engine {
   Legality legality_;
   ValueMerge merge_;
   ValueClasses classes_;
+  std::vector<Due> batch_;
   CollapseOutcome outcome_;
   double error_so_far_ = 0;
   bool over_error_ = false;
 
-  // Scratch of commit().
-  std::vector<std::uint32_t> ring_, touched_edges_;
+  // Scratch of commit() and try_vanish().
+  std::vector<std::uint32_t> ring_;
 };
 
 // --- Costs -----------------------------------------------------------------------------------------
@@ -190,7 +203,7 @@ void Engine::fill_queue() {
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
     ValueClasses scratch;
     for (std::size_t e = begin; e < end; ++e) {
-      const auto [a, b] = mesh_.edges[e];
+      const auto [a, b] = mesh_.edges[e].ends;
       cost[e] = static_cast<float>(best_place(a, b, edge_quadric(a, b, scratch)).cost);
     }
   });
@@ -208,44 +221,102 @@ StopReason Engine::loop() {
   const std::uint64_t start = mesh_.live_faces;
   std::uint64_t turns = 0;
   while (mesh_.live_faces > target_) {
-    if ((++turns & 0x3FFF) == 0) {
+    if ((++turns & 0x3FF) == 0) {
       const double done =
           static_cast<double>(start - mesh_.live_faces) / static_cast<double>(start - target_);
       if (!context_.advance("collapse", done)) return StopReason::cancelled;
     }
-    const std::uint32_t item = queue_.first();
-    if (item == kInvalid) return over_error_ ? StopReason::error : StopReason::stuck;
-    if (item >= edge_count_) {
-      try_vanish(item - edge_count_);
-    } else {
-      try_edge(item);
+    take_batch();
+    if (batch_.empty()) return over_error_ ? StopReason::error : StopReason::stuck;
+    drop_dearer();
+    fetch_surroundings();
+    for (const Due& due : batch_) {
+      if (mesh_.live_faces <= target_) break;
+      if (due.item >= edge_count_) {
+        try_vanish(due.item - edge_count_);
+      } else if (mesh_.edge_alive(due.item) && !queue_.contains(due.item)) {
+        try_edge(due);
+      }
     }
   }
   return StopReason::target;
 }
 
-/// Collapses edge e if that is legal at about the cost that it is queued for; else puts it back.
-void Engine::try_edge(std::uint32_t e) {
-  const auto [a, b] = mesh_.edges[e];
+/// Takes the next items out of the queue: those that cost about as much as the first.
+void Engine::take_batch() {
+  batch_.clear();
+  while (batch_.size() < kBatch) {
+    const std::uint32_t item = queue_.first();
+    if (item == kInvalid) break;
+    const double cost = queue_.cost_floor(item);
+    if (!batch_.empty() && cost > batch_.front().cost * kTolerance) break;
+    queue_.remove(item);
+    batch_.push_back({item, cost});
+    if (item < edge_count_) prefetch(&mesh_.edges[item]);
+  }
+  for (const Due& due : batch_) {
+    if (due.item >= edge_count_) continue;
+    for (const std::uint32_t v : mesh_.edges[due.item].ends) {
+      prefetch(&mesh_.vertices[v]);
+      prefetch(&mesh_.vertices[v].quadric.c);
+    }
+  }
+}
+
+/// Puts back the edges of the batch that cost more by now than they were queued for.
+void Engine::drop_dearer() {
+  std::erase_if(batch_, [&](const Due& due) {
+    if (due.item >= edge_count_) return false;
+    const auto [a, b] = mesh_.edges[due.item].ends;
+    const bool dearer = is_dearer(due, best_place(a, b, edge_quadric(a, b, classes_)).cost);
+    if (!dearer) {
+      prefetch(mesh_.ring(a).data());
+      prefetch(mesh_.ring(b).data());
+    }
+    return dearer;
+  });
+}
+
+/// Fetches the triangles around the edges of the batch, then their vertices, all at once.
+void Engine::fetch_surroundings() const {
+  const auto for_faces = [&](auto&& f) {
+    for (const Due& due : batch_) {
+      if (due.item >= edge_count_) continue;
+      for (const std::uint32_t v : mesh_.edges[due.item].ends) {
+        for (const std::uint32_t c : mesh_.ring(v).first(std::min<std::size_t>(mesh_.ring(v).size(), 12)))
+          f(mesh_.faces[c / 3]);
+      }
+    }
+  };
+  for_faces([](const CollapseFace& face) { prefetch(&face); });
+  for_faces([&](const CollapseFace& face) {
+    for (const std::uint32_t v : face.vertex) prefetch(&mesh_.vertices[v]);
+  });
+}
+
+/// Collapses the edge if that is legal at about the cost that it was queued for; else puts it back.
+void Engine::try_edge(const Due& due) {
+  const std::uint32_t e = due.item;
+  const auto [a, b] = mesh_.edges[e].ends;
   const Quadric q = edge_quadric(a, b, classes_);
   std::array<Candidate, 4> places;
   places[0] = best_place(a, b, q);
-  if (is_dearer(e, places[0].cost)) return;
+  if (is_dearer(due, places[0].cost)) return;
   if (!legality_.look_at(a, b) && (legality_.topology() == Block::last || options_.keep_topology)) {
-    put_off(e);
+    put_off(due);
     return;
   }
   if (is_legal(a, b, places[0].position)) {
-    take_or_requeue(e, q, places[0]);
+    take_or_requeue(due, q, places[0]);
     return;
   }
   const std::size_t count = fallbacks(a, b, q, places.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_legal(a, b, places[i].position)) continue;
-    take_or_requeue(e, q, places[i]);
+    take_or_requeue(due, q, places[i]);
     return;
   }
-  put_off(e);
+  put_off(due);
 }
 
 bool Engine::is_legal(std::uint32_t a, std::uint32_t b, Vec3d p) {
@@ -254,41 +325,31 @@ bool Engine::is_legal(std::uint32_t a, std::uint32_t b, Vec3d p) {
   return legality_.texture(a, b, merge_);
 }
 
-/// Whether edge e costs more than it is queued for; then it goes back into the queue at its price.
-bool Engine::is_dearer(std::uint32_t e, double price) {
-  if (price <= queue_.cost_floor(e) * kTolerance + std::numeric_limits<float>::min()) return false;
-  if (std::isfinite(price)) {
-    queue_.set(e, price);
-  } else {
-    queue_.remove(e);
-  }
+/// Whether the edge costs more than it was queued for; then it goes back into the queue at its price,
+/// if there is one.
+bool Engine::is_dearer(const Due& due, double price) {
+  if (price <= due.cost * kTolerance + std::numeric_limits<float>::min()) return false;
+  if (std::isfinite(price)) queue_.set(due.item, price);
   return true;
 }
 
 /// A collapse that is legal is carried out if it costs about what it was queued for.
-void Engine::take_or_requeue(std::uint32_t e, const Quadric& q, const Candidate& where) {
-  if (is_dearer(e, where.cost * (legality_.topology() == Block::none ? 1 : kTopologyPenalty))) return;
+void Engine::take_or_requeue(const Due& due, const Quadric& q, const Candidate& where) {
+  if (is_dearer(due, where.cost * (legality_.topology() == Block::none ? 1 : kTopologyPenalty))) return;
   const double error = std::sqrt(where.cost / std::max(q.weight, 1e-30));
   if (error > max_error_) {
     over_error_ = true;
-    queue_.remove(e);
     return;
   }
-  commit(mesh_.edges[e][0], mesh_.edges[e][1], where, error);
+  const auto [a, b] = mesh_.edges[due.item].ends;
+  commit(a, b, where, error);
 }
 
-void Engine::put_off(std::uint32_t e) {
-  if (++tries_[e] > kMaxRetries) {
-    queue_.remove(e);
-    return;
-  }
-  const double floor = std::max<double>(queue_.cost_floor(e), 1e-20);
-  queue_.set(e, floor * kRetryFactor);
+void Engine::put_off(const Due& due) {
+  if (++tries_[due.item] <= kMaxRetries) queue_.set(due.item, std::max(due.cost, 1e-20) * kRetryFactor);
 }
 
 void Engine::try_vanish(std::uint32_t component) {
-  const std::uint32_t item = edge_count_ + component;
-  queue_.remove(item);
   const FaceComponents& all = state_.components;
   ring_.clear();
   for (std::uint32_t k = all.first[component]; k < all.first[component + 1]; ++k) {
@@ -307,10 +368,8 @@ void Engine::try_vanish(std::uint32_t component) {
   CollapseStep step;
   step.kind = StepKind::vanish;
   step.mesh = state_.slot_of_face(ring_.front());
-  touched_edges_.clear();
   const std::vector<std::uint32_t> faces = ring_;
   for (const std::uint32_t f : faces) drop_face(f);
-  drop_unused_edges();
   finish_step(step, state_.vanish[component].error);
 }
 
@@ -327,11 +386,9 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   const bool moved = !(where.position == mesh_.vertices[b].position);
 
   merge_.apply(a, b, m, outcome_.record);
-  touched_edges_.clear();
   drop_shared_faces(a, b);
   merge_edges(a, b);
   drop_coincident_faces(b);
-  drop_unused_edges();
   merge_.update_singles(b);
 
   mesh_.vertices[b].position = where.position;
@@ -348,9 +405,14 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   finish_step(step, error);
 }
 
+/// One face less on edge e; with the last the edge goes.
+void Engine::leave_edge(std::uint32_t e) {
+  if (--mesh_.edges[e].face_count == 0) queue_.remove(e);
+}
+
 void Engine::drop_face(std::uint32_t f) {
   for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
-    touched_edges_.push_back(mesh_.edge(c));
+    leave_edge(mesh_.edge(c));
     mesh_.unlink_corner(c);
   }
   mesh_.kill_face(f);
@@ -380,12 +442,13 @@ void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
   });
   const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
     const std::uint32_t e = mesh_.edge(half_edge);
-    if (mesh_.vertices[w].mark == mark) {
-      mesh_.edge(half_edge) = mesh_.vertices[w].mark_count;
-      if (mesh_.edge(half_edge) != e) touched_edges_.push_back(e);
-    } else {
+    if (mesh_.vertices[w].mark != mark) {
       note(w, e);
-      mesh_.edges[e] = {b, w};
+      mesh_.edges[e].ends = {b, w};
+    } else if (const std::uint32_t kept = mesh_.vertices[w].mark_count; kept != e) {
+      mesh_.edge(half_edge) = kept;
+      ++mesh_.edges[kept].face_count;
+      leave_edge(e);
     }
   };
   ring_.clear();
@@ -423,23 +486,6 @@ void Engine::drop_coincident_faces(std::uint32_t b) {
   }
 }
 
-/// Removes edges that lost their last triangle, or were merged into another.
-void Engine::drop_unused_edges() {
-  for (const std::uint32_t e : touched_edges_) {
-    if (!mesh_.edge_alive(e)) continue;
-    // Scan from the end that has fewer triangles: a vertex that was merged away has none.
-    const auto [v, w] = mesh_.edges[e];
-    const std::uint32_t from = mesh_.vertices[w].ring_size < mesh_.vertices[v].ring_size ? w : v;
-    bool used = false;
-    mesh_.for_ring(from, [&](std::uint32_t c) {
-      used = used || mesh_.edge(c) == e || mesh_.edge(CollapseMesh::previous(c)) == e;
-    });
-    if (used) continue;
-    mesh_.kill_edge(e);
-    queue_.remove(e);
-  }
-}
-
 /// Gives edges at b that were refused another chance, at their present cost. The others keep the cost
 /// that they have in the queue: a merged vertex only adds to it, so it is a lower bound, and `try_edge`
 /// looks again when it comes up.
@@ -472,7 +518,7 @@ void Engine::count_blocked() {
   for (std::uint32_t e = 0; e < edge_count_; ++e) {
     if (!mesh_.edge_alive(e)) continue;
     ++outcome_.blocked.edges;
-    const auto [a, b] = mesh_.edges[e];
+    const auto [a, b] = mesh_.edges[e].ends;
     if (mesh_.vertices[a].locked && mesh_.vertices[b].locked) {
       ++outcome_.blocked.locked;
     } else if (!legality_.look_at(a, b)) {

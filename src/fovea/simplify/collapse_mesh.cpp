@@ -21,9 +21,10 @@ void CollapseMesh::link() {
       if (w.mark != mark) {
         w.mark = mark;
         w.mark_count = static_cast<std::uint32_t>(edges.size());
-        edges.push_back({v, other});
+        edges.push_back({{v, other}, 0});
       }
       edge(half_edge) = w.mark_count;
+      ++edges[w.mark_count].face_count;
     };
     for_ring(v, [&](std::uint32_t c) {
       number(c, vertex(next(c)));
@@ -98,16 +99,6 @@ void CollapseMesh::give_room(std::uint32_t begin, std::uint32_t size) {
   std::uint32_t& free = free_room_[static_cast<std::size_t>(std::bit_width(size - 1))];
   corners[begin] = free;
   free = begin;
-}
-
-std::vector<std::uint8_t> count_edge_faces(const CollapseMesh& mesh) {
-  std::vector<std::uint8_t> count(mesh.edges.size(), 0);
-  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-    if (!mesh.face_alive(f)) continue;
-    for (const std::uint32_t e : mesh.faces[f].edge)
-      count[e] = static_cast<std::uint8_t>(std::min(count[e] + 1, 3));
-  }
-  return count;
 }
 
 FaceComponents find_components(const CollapseMesh& mesh) {

@@ -28,6 +28,12 @@ struct alignas(64) CollapseVertex {
   Quadric quadric;
 };
 
+/// An edge of the engine; gone when no face is left on it.
+struct CollapseEdge {
+  std::array<std::uint32_t, 2> ends;
+  std::uint32_t face_count = 0;
+};
+
 /// Triangles that can lose edges: the connectivity of the collapse engine.
 ///
 /// Nothing is assumed of the surface; an edge is a pair of vertices with any number of triangles. The
@@ -40,8 +46,8 @@ struct alignas(64) CollapseVertex {
 struct CollapseMesh {
   std::vector<CollapseFace> faces;                  ///< [#F]
   std::vector<CollapseVertex> vertices;             ///< [#V]
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< [#E], ends; a removed edge has kInvalid first.
-  std::vector<std::uint32_t> corners;               ///< The rings, with gaps.
+  std::vector<CollapseEdge> edges;      ///< [#E]
+  std::vector<std::uint32_t> corners;   ///< The rings, with gaps.
   std::size_t live_faces = 0;
 
   /// Builds rings and edges from `vertex` of all faces, which are distinct. O(#F).
@@ -53,7 +59,7 @@ struct CollapseMesh {
   std::uint32_t edge(std::uint32_t c) const { return faces[c / 3].edge[c % 3]; }
   std::uint32_t& edge(std::uint32_t c) { return faces[c / 3].edge[c % 3]; }
   bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
-  bool edge_alive(std::uint32_t e) const { return edges[e][0] != kInvalid; }
+  bool edge_alive(std::uint32_t e) const { return edges[e].face_count > 0; }
 
   /// The corners at v. Valid until a ring changes.
   std::span<const std::uint32_t> ring(std::uint32_t v) const {
@@ -74,7 +80,6 @@ struct CollapseMesh {
     faces[f].vertex[0] = kInvalid;
     --live_faces;
   }
-  void kill_edge(std::uint32_t e) { edges[e][0] = kInvalid; }
   /// A number that no vertex's `mark` has; the three after it are free as well.
   std::uint32_t new_mark();
 
@@ -87,9 +92,6 @@ struct CollapseMesh {
   std::uint32_t last_mark_ = 0;
   std::vector<std::uint32_t> free_room_;  // [log2 of room], first of a list linked through `corners`
 };
-
-/// Faces on each edge [#E], saturated at 3.
-std::vector<std::uint8_t> count_edge_faces(const CollapseMesh& mesh);
 
 /// Connected components through shared vertices, as lists of faces.
 struct FaceComponents {

@@ -42,7 +42,6 @@ class Builder {
   CollapseState run() {
     make_connectivity();
     make_channels();
-    edge_faces_ = count_edge_faces(state_.mesh);
     make_locks();
     measure_faces();
     for (Channel& channel : state_.channels) {
@@ -88,7 +87,6 @@ class Builder {
   const SimplifyOptions& options_;
   const Context& context_;
   CollapseState state_;
-  std::vector<std::uint8_t> edge_faces_;
   std::vector<double> importance_weight_;  // [#V], empty if all are 1; 1 where locked
   std::vector<Vec3d> normal_;              // [#F], unit
   std::vector<double> area_;               // [#F]
@@ -297,9 +295,9 @@ void Builder::make_locks() {
     }
   }
   if (!options_.lock_boundary) return;
-  for (std::size_t e = 0; e < edge_faces_.size(); ++e) {
-    if (edge_faces_[e] != 1) continue;
-    for (const std::uint32_t v : state_.mesh.edges[e]) state_.mesh.vertices[v].locked = 1;
+  for (const CollapseEdge& edge : state_.mesh.edges) {
+    if (edge.face_count != 1) continue;
+    for (const std::uint32_t v : edge.ends) state_.mesh.vertices[v].locked = 1;
   }
 }
 
@@ -459,9 +457,9 @@ void Builder::add_edge_quadrics() {
   };
   for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {
     const std::uint32_t e = mesh.edge(c);
-    if (edge_faces_[e] == 1) {
+    if (mesh.edges[e].face_count == 1) {
       hold(c, kBoundaryWeight * options_.boundary_weight);
-    } else if (edge_faces_[e] == 2) {
+    } else if (mesh.edges[e].face_count == 2) {
       if (first_corner[e] == kInvalid) {
         first_corner[e] = c;
       } else if (is_seam(first_corner[e], c)) {
