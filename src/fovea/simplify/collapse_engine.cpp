@@ -41,6 +41,9 @@ struct Candidate {
 struct Due {
   std::uint32_t item = kInvalid;
   double cost = 0;  ///< What it was queued for.
+  // Of an edge, as it is now:
+  Quadric quadric;
+  Candidate place;
 };
 
 class Engine {
@@ -74,10 +77,11 @@ class Engine {
   void take_batch();
   void drop_dearer();
   void fetch_surroundings() const;
-  void try_edge(const Due& due);
+  void price(Due& due);
+  void try_edge(Due& due);
   bool is_dearer(const Due& due, double price);
   bool is_legal(std::uint32_t a, std::uint32_t b, Vec3d p);
-  void take_or_requeue(const Due& due, const Quadric& q, const Candidate& where);
+  void take_or_requeue(const Due& due, const Candidate& where);
   void try_vanish(std::uint32_t component);
   void put_off(const Due& due);
   void count_blocked();
@@ -110,6 +114,7 @@ class Engine {
   ValueMerge merge_;
   ValueClasses classes_;
   std::vector<Due> batch_;
+  std::vector<std::uint32_t> changed_;  // vertices merged since the batch was priced
   CollapseOutcome outcome_;
   double error_so_far_ = 0;
   bool over_error_ = false;
@@ -161,7 +166,7 @@ void Engine::subtract_channel(Quadric& q, const Channel& channel, std::uint32_t 
 
 /// Error of the merged vertex as a function of its position, attributes at their best.
 Quadric Engine::edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scratch) const {
-  Quadric q = mesh_.vertices[a].quadric + mesh_.vertices[b].quadric;
+  Quadric q = mesh_.quadrics[a] + mesh_.quadrics[b];
   for (const Channel& channel : state_.channels) {
     if (channel.kind == ChannelKind::fitted) subtract_channel(q, channel, a, b, scratch);
   }
@@ -230,7 +235,8 @@ StopReason Engine::loop() {
     if (batch_.empty()) return over_error_ ? StopReason::error : StopReason::stuck;
     drop_dearer();
     fetch_surroundings();
-    for (const Due& due : batch_) {
+    changed_.clear();
+    for (Due& due : batch_) {
       if (mesh_.live_faces <= target_) break;
       if (due.item >= edge_count_) {
         try_vanish(due.item - edge_count_);
@@ -251,24 +257,42 @@ void Engine::take_batch() {
     const double cost = queue_.cost_floor(item);
     if (!batch_.empty() && cost > batch_.front().cost * kTolerance) break;
     queue_.remove(item);
-    batch_.push_back({item, cost});
+    batch_.push_back({item, cost, {}, {}});
     if (item < edge_count_) prefetch(&mesh_.edges[item]);
   }
   for (const Due& due : batch_) {
     if (due.item >= edge_count_) continue;
     for (const std::uint32_t v : mesh_.edges[due.item].ends) {
       prefetch(&mesh_.vertices[v]);
-      prefetch(&mesh_.vertices[v].quadric.c);
+      prefetch(&mesh_.quadrics[v]);
+      prefetch(&mesh_.quadrics[v].weight);
+      for (const Channel& channel : state_.channels) prefetch(&channel.single[v]);
+    }
+  }
+  for (const Due& due : batch_) {
+    if (due.item >= edge_count_) continue;
+    for (const std::uint32_t v : mesh_.edges[due.item].ends) {
+      for (const Channel& channel : state_.channels) {
+        if (channel.kind == ChannelKind::fitted && channel.single[v] < Channel::kMany)
+          prefetch(channel.value_quadric(channel.single[v]));
+      }
     }
   }
 }
 
+void Engine::price(Due& due) {
+  const auto [a, b] = mesh_.edges[due.item].ends;
+  due.quadric = edge_quadric(a, b, classes_);
+  due.place = best_place(a, b, due.quadric);
+}
+
 /// Puts back the edges of the batch that cost more by now than they were queued for.
 void Engine::drop_dearer() {
-  std::erase_if(batch_, [&](const Due& due) {
+  std::erase_if(batch_, [&](Due& due) {
     if (due.item >= edge_count_) return false;
     const auto [a, b] = mesh_.edges[due.item].ends;
-    const bool dearer = is_dearer(due, best_place(a, b, edge_quadric(a, b, classes_)).cost);
+    price(due);
+    const bool dearer = is_dearer(due, due.place.cost);
     if (!dearer) {
       prefetch(mesh_.ring(a).data());
       prefetch(mesh_.ring(b).data());
@@ -295,25 +319,26 @@ void Engine::fetch_surroundings() const {
 }
 
 /// Collapses the edge if that is legal at about the cost that it was queued for; else puts it back.
-void Engine::try_edge(const Due& due) {
-  const std::uint32_t e = due.item;
-  const auto [a, b] = mesh_.edges[e].ends;
-  const Quadric q = edge_quadric(a, b, classes_);
-  std::array<Candidate, 4> places;
-  places[0] = best_place(a, b, q);
-  if (is_dearer(due, places[0].cost)) return;
+void Engine::try_edge(Due& due) {
+  const auto [a, b] = mesh_.edges[due.item].ends;
+  if (std::find(changed_.begin(), changed_.end(), a) != changed_.end() ||
+      std::find(changed_.begin(), changed_.end(), b) != changed_.end()) {
+    price(due);
+    if (is_dearer(due, due.place.cost)) return;
+  }
   if (!legality_.look_at(a, b) && (legality_.topology() == Block::last || options_.keep_topology)) {
     put_off(due);
     return;
   }
-  if (is_legal(a, b, places[0].position)) {
-    take_or_requeue(due, q, places[0]);
+  if (is_legal(a, b, due.place.position)) {
+    take_or_requeue(due, due.place);
     return;
   }
-  const std::size_t count = fallbacks(a, b, q, places.data());
+  std::array<Candidate, 3> places;
+  const std::size_t count = fallbacks(a, b, due.quadric, places.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_legal(a, b, places[i].position)) continue;
-    take_or_requeue(due, q, places[i]);
+    take_or_requeue(due, places[i]);
     return;
   }
   put_off(due);
@@ -334,9 +359,9 @@ bool Engine::is_dearer(const Due& due, double price) {
 }
 
 /// A collapse that is legal is carried out if it costs about what it was queued for.
-void Engine::take_or_requeue(const Due& due, const Quadric& q, const Candidate& where) {
+void Engine::take_or_requeue(const Due& due, const Candidate& where) {
   if (is_dearer(due, where.cost * (legality_.topology() == Block::none ? 1 : kTopologyPenalty))) return;
-  const double error = std::sqrt(where.cost / std::max(q.weight, 1e-30));
+  const double error = std::sqrt(where.cost / std::max(due.quadric.weight, 1e-30));
   if (error > max_error_) {
     over_error_ = true;
     return;
@@ -392,9 +417,10 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   merge_.update_singles(b);
 
   mesh_.vertices[b].position = where.position;
-  mesh_.vertices[b].quadric += mesh_.vertices[a].quadric;
+  mesh_.quadrics[b] += mesh_.quadrics[a];
   if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
   revive_edges(b);
+  changed_.push_back(b);
 
   CollapseStep step;
   step.mesh = m;

@@ -76,7 +76,8 @@ void CollapseMesh::join_rings(std::uint32_t a, std::uint32_t b) {
     give_room(to.ring_begin, to.ring_size);
     to.ring_begin = begin;
   }
-  std::copy_n(corners.begin() + from.ring_begin, from.ring_size, corners.begin() + to.ring_begin + to.ring_size);
+  std::copy_n(corners.begin() + from.ring_begin, from.ring_size,
+              corners.begin() + to.ring_begin + to.ring_size);
   to.ring_size = size;
   give_room(from.ring_begin, from.ring_size);
   from.ring_size = 0;

@@ -17,15 +17,14 @@ struct CollapseFace {
   std::array<std::uint32_t, 3> edge;    ///< Edge from this corner's vertex to the next corner's.
 };
 
-/// A vertex of the engine. Two cache lines, the first with what a look at the neighbourhood needs.
-struct alignas(64) CollapseVertex {
+/// A vertex of the engine, without its quadric: no more than a look at the neighbourhood needs.
+struct CollapseVertex {
   Vec3d position;                    ///< In units of the scene's diagonal, around the mesh's centre.
   std::uint32_t ring_begin = 0;      ///< Where its ring begins in CollapseMesh::corners.
   std::uint32_t ring_size : 31 = 0;  ///< Corners in its ring; 0 without triangles.
   std::uint32_t locked : 1 = 0;      ///< Must stay where it is.
   std::uint32_t mark = 0;            ///< Scratch of whoever looks around; see CollapseMesh::new_mark.
   std::uint32_t mark_count = 0;      ///< Scratch that holds while `mark` does.
-  Quadric quadric;
 };
 
 /// An edge of the engine; gone when no face is left on it.
@@ -44,10 +43,11 @@ struct CollapseEdge {
 ///              /\                       edge of c: v – w
 ///   v at c ---/--\                      edge of previous(c): u – v
 struct CollapseMesh {
-  std::vector<CollapseFace> faces;                  ///< [#F]
-  std::vector<CollapseVertex> vertices;             ///< [#V]
-  std::vector<CollapseEdge> edges;      ///< [#E]
-  std::vector<std::uint32_t> corners;   ///< The rings, with gaps.
+  std::vector<CollapseFace> faces;       ///< [#F]
+  std::vector<CollapseVertex> vertices;  ///< [#V]
+  std::vector<Quadric> quadrics;         ///< [#V]
+  std::vector<CollapseEdge> edges;       ///< [#E]
+  std::vector<std::uint32_t> corners;    ///< The rings, with gaps.
   std::size_t live_faces = 0;
 
   /// Builds rings and edges from `vertex` of all faces, which are distinct. O(#F).

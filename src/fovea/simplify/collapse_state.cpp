@@ -30,6 +30,12 @@ constexpr double kSeamWeight = 0.3;
 /// Weight of a component that vanishes against a surface of its area that moves by its radius.
 constexpr double kVanishWeight = 1;
 
+/// The linear functions gradient[k]·p + origin[k] of a channel over a face.
+struct FaceAttributes {
+  std::vector<Vec3d> gradient;
+  std::vector<double> origin;
+};
+
 class Builder {
  public:
   Builder(std::span<const TriMesh* const> meshes, std::span<const double> scales,
@@ -48,10 +54,7 @@ class Builder {
       find_single_values(channel);
       if (channel.kind == ChannelKind::fitted) scale_channel(channel);
     }
-    add_surface_quadrics();
-    for (Channel& channel : state_.channels) {
-      if (channel.kind == ChannelKind::fitted) add_attribute_quadrics(channel);
-    }
+    add_face_quadrics();
     add_edge_quadrics();
     price_components();
     return std::move(state_);
@@ -71,8 +74,9 @@ class Builder {
   void measure_faces();
   void find_single_values(Channel& channel) const;
   void scale_channel(Channel& channel) const;
-  void add_surface_quadrics();
-  void add_attribute_quadrics(Channel& channel);
+  void add_face_quadrics();
+  void add_face(std::uint32_t f, std::size_t begin, std::size_t end, FaceAttributes& scratch);
+  double find_slopes(const Channel& channel, std::uint32_t f, FaceAttributes& out) const;
   void add_edge_quadrics();
   bool is_seam(std::uint32_t corner_a, std::uint32_t corner_b) const;
   void price_components();
@@ -357,69 +361,89 @@ void Builder::scale_channel(Channel& channel) const {
   }
 }
 
-void Builder::add_surface_quadrics() {
-  parallel_for(context_, state_.mesh.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      CollapseVertex& vertex = state_.mesh.vertices[v];
-      const double importance = weight_of(static_cast<std::uint32_t>(v));
-      double weight = 0;
-      state_.mesh.for_ring(static_cast<std::uint32_t>(v), [&](std::uint32_t c) {
-        const double w = area_[c / 3] / 3;
-        vertex.quadric.add_linear(normal_[c / 3], -dot(normal_[c / 3], vertex.position), w * importance);
-        weight += w;
-      });
-      vertex.quadric.add_point(vertex.position, kRegularization * weight * importance);
-      vertex.quadric.weight = weight;
-    }
-  });
+/// Every face adds its plane and the slopes of its attributes to its corners. Each thread walks all
+/// faces for a range of vertices of its own, so that sums come out the same for any number of threads.
+void Builder::add_face_quadrics() {
+  CollapseMesh& mesh = state_.mesh;
+  mesh.quadrics.resize(mesh.vertices.size());
+  for (Channel& channel : state_.channels) {
+    if (channel.kind != ChannelKind::fitted) continue;
+    const std::size_t count = channel.values.size() / static_cast<std::size_t>(channel.width);
+    channel.quadric.assign(count * attribute_stride(channel.fit_width), 0.0);
+  }
+  constexpr int kMostRanges = 8;
+  const auto ranges = static_cast<std::size_t>(std::min(context_.thread_count(), kMostRanges));
+  parallel_for(context_, mesh.vertices.size(), mesh.vertices.size() / ranges + 1,
+               [&](std::size_t begin, std::size_t end) {
+                 FaceAttributes scratch;
+                 for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+                   const auto& t = mesh.faces[f].vertex;
+                   const auto inside = [&](std::uint32_t v) { return v >= begin && v < end; };
+                   if (inside(t[0]) || inside(t[1]) || inside(t[2])) add_face(f, begin, end, scratch);
+                 }
+                 for (std::size_t v = begin; v < end; ++v) {
+                   Quadric& q = mesh.quadrics[v];
+                   q.add_point(mesh.vertices[v].position,
+                               kRegularization * q.weight * weight_of(static_cast<std::uint32_t>(v)));
+                 }
+               });
 }
 
-void Builder::add_attribute_quadrics(Channel& channel) {
-  const std::size_t stride = attribute_stride(channel.fit_width);
-  channel.quadric.assign(channel.values.size() / static_cast<std::size_t>(channel.width) * stride, 0.0);
-  const int width = channel.fit_width;
-  // Gathered per vertex: a value belongs to one vertex, so vertices do not share anything.
-  parallel_for(context_, state_.mesh.vertices.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
-    std::vector<Vec3d> gradient(static_cast<std::size_t>(width));
-    std::vector<double> origin(static_cast<std::size_t>(width));
-    for (std::size_t v = begin; v < end; ++v) {
-      Quadric& quadric = state_.mesh.vertices[v].quadric;
-      const double importance = weight_of(static_cast<std::uint32_t>(v));
-      state_.mesh.for_ring(static_cast<std::uint32_t>(v), [&](std::uint32_t c) {
-        const std::uint32_t f = c / 3;
-        const std::uint32_t own = channel.corner_value[c];
-        if (own == kInvalid || !(area_[f] > 1e-16)) return;
-        const double scale = channel.scale[state_.slot_of_face(f)];
-        const Vec3d p0 = state_.mesh.vertices[state_.mesh.faces[f].vertex[0]].position;
-        const TriangleGradient along(state_.mesh.vertices[state_.mesh.faces[f].vertex[1]].position - p0,
-                                     state_.mesh.vertices[state_.mesh.faces[f].vertex[2]].position - p0,
-                                     normal_[f], 2 * area_[f]);
-        const float* s[3];
-        for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * f + k]);
-        double steepness = 0;
-        for (int k = 0; k < width; ++k) {
-          const Vec3d g = along(s[0][k], s[1][k], s[2][k]) * scale;
-          gradient[static_cast<std::size_t>(k)] = g;
-          origin[static_cast<std::size_t>(k)] = scale * s[0][k] - dot(g, p0);
-          steepness += dot(g, g);
-        }
-        const double limit = steepness_limit(channel, scale);
-        const double damping = steepness > limit ? limit / steepness : 1;
-        const double w = area_[f] / 3 * importance * damping;
-        double* value = channel.value_quadric(own);
-        for (int k = 0; k < width; ++k) {
-          const Vec3d g = gradient[static_cast<std::size_t>(k)];
-          const double d = origin[static_cast<std::size_t>(k)];
-          quadric.add_linear(g, d, w);
-          value[4 * k] += w * g.x;
-          value[4 * k + 1] += w * g.y;
-          value[4 * k + 2] += w * g.z;
-          value[4 * k + 3] += w * d;
-        }
-        value[4 * width] += w;
-      });
+/// Adds face f to those of its corners whose vertices are in [begin, end).
+void Builder::add_face(std::uint32_t f, std::size_t begin, std::size_t end, FaceAttributes& scratch) {
+  CollapseMesh& mesh = state_.mesh;
+  const auto& t = mesh.faces[f].vertex;
+  const double w = area_[f] / 3;
+  Quadric q;
+  q.add_linear(normal_[f], -dot(normal_[f], mesh.vertices[t[0]].position), w);
+  q.weight = w;
+  for (Channel& channel : state_.channels) {
+    if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid || !(area_[f] > 1e-16))
+      continue;
+    const double damping = find_slopes(channel, f, scratch);
+    const auto width = static_cast<std::size_t>(channel.fit_width);
+    for (std::size_t k = 0; k < width; ++k) q.add_linear(scratch.gradient[k], scratch.origin[k], w * damping);
+    for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
+      const std::uint32_t v = mesh.vertex(c);
+      if (v < begin || v >= end) continue;
+      const double share = w * damping * weight_of(v);
+      double* value = channel.value_quadric(channel.corner_value[c]);
+      for (std::size_t k = 0; k < width; ++k) {
+        value[4 * k] += share * scratch.gradient[k].x;
+        value[4 * k + 1] += share * scratch.gradient[k].y;
+        value[4 * k + 2] += share * scratch.gradient[k].z;
+        value[4 * k + 3] += share * scratch.origin[k];
+      }
+      value[4 * width] += share;
     }
-  });
+  }
+  for (const std::uint32_t v : t) {
+    if (v >= begin && v < end) mesh.quadrics[v].add_scaled(q, weight_of(v));
+  }
+}
+
+/// The linear functions of a channel's components over face f, in lengths. Returns by how much they
+/// are damped for being too steep.
+double Builder::find_slopes(const Channel& channel, std::uint32_t f, FaceAttributes& out) const {
+  const auto& t = state_.mesh.faces[f].vertex;
+  const auto width = static_cast<std::size_t>(channel.fit_width);
+  out.gradient.resize(std::max(out.gradient.size(), width));
+  out.origin.resize(std::max(out.origin.size(), width));
+  const double scale = channel.scale[state_.slot_of_face(f)];
+  const Vec3d p0 = state_.mesh.vertices[t[0]].position;
+  const TriangleGradient along(state_.mesh.vertices[t[1]].position - p0,
+                               state_.mesh.vertices[t[2]].position - p0, normal_[f], 2 * area_[f]);
+  const float* s[3];
+  for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * f + k]);
+  double steepness = 0;
+  for (std::size_t k = 0; k < width; ++k) {
+    const Vec3d g = along(s[0][k], s[1][k], s[2][k]) * scale;
+    out.gradient[k] = g;
+    out.origin[k] = scale * s[0][k] - dot(g, p0);
+    steepness += dot(g, g);
+  }
+  const double limit = steepness_limit(channel, scale);
+  return steepness > limit ? limit / steepness : 1;
 }
 
 /// Whether two faces on one edge, at corners whose edge it is, differ in texture coordinates or part.
@@ -451,8 +475,7 @@ void Builder::add_edge_quadrics() {
     const Vec3d upright = normalized(cross(normal_[c / 3], edge));
     const double d = -dot(upright, state_.mesh.vertices[v].position);
     for (const std::uint32_t end : {v, w}) {
-      state_.mesh.vertices[end].quadric.add_linear(upright, d,
-                                                   0.5 * weight * weight_of(end) * dot(edge, edge));
+      state_.mesh.quadrics[end].add_linear(upright, d, 0.5 * weight * weight_of(end) * dot(edge, edge));
     }
   };
   for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {

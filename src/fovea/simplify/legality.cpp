@@ -86,14 +86,14 @@ bool Legality::keeps_shape(std::uint32_t c, std::uint32_t other, Vec3d p) const 
   const Vec3d p1 = state_.mesh.vertices[v1].position, p2 = state_.mesh.vertices[v2].position;
   const Vec3d before = cross(p1 - p0, p2 - p0), after = cross(p1 - p, p2 - p);
   const double before2 = length_squared(before), after2 = length_squared(after);
-  const double size_before = longest_squared(p0, p1, p2), size_after = longest_squared(p, p1, p2);
   // Height / longest edge = double area / longest edge².
-  const bool sliver_before = before2 < kSliver * kSliver * size_before * size_before;
-  const bool sliver_after = after2 < kSliver * kSliver * size_after * size_after;
-  if (sliver_before) return true;
-  if (sliver_after) return false;
+  const auto is_sliver = [&](Vec3d apex, double double_area2) {
+    const double longest2 = longest_squared(apex, p1, p2);
+    return double_area2 < kSliver * kSliver * longest2 * longest2;
+  };
   const double cosine = dot(before, after);
-  return cosine > 0 && cosine * cosine > kMaxTurnCosine * kMaxTurnCosine * before2 * after2;
+  const bool keeps_side = cosine > 0 && cosine * cosine > kMaxTurnCosine * kMaxTurnCosine * before2 * after2;
+  return (keeps_side && !is_sliver(p, after2)) || is_sliver(p0, before2);
 }
 
 bool Legality::shape(std::uint32_t a, std::uint32_t b, Vec3d p) const {

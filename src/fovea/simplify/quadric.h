@@ -24,6 +24,13 @@ struct Quadric {
   }
   friend Quadric operator+(Quadric a, const Quadric& b) { return a += b; }
 
+  /// Adds w · q; the area behind it is that of q, whatever w.
+  void add_scaled(const Quadric& q, double w) {
+    xx += w * q.xx, xy += w * q.xy, xz += w * q.xz, yy += w * q.yy, yz += w * q.yz, zz += w * q.zz;
+    bx += w * q.bx, by += w * q.by, bz += w * q.bz;
+    c += w * q.c;
+    weight += q.weight;
+  }
   /// Adds w · (g·p + d)²: for unit g the squared distance to a plane, for a gradient g the squared
   /// deviation of an attribute from zero.
   void add_linear(Vec3d g, double d, double w) {
