@@ -78,7 +78,7 @@ void CollapseMesh::join_rings(std::uint32_t a, std::uint32_t b) {
   }
   std::copy_n(corners.begin() + from.ring_begin, from.ring_size,
               corners.begin() + to.ring_begin + to.ring_size);
-  to.ring_size = size;
+  to.ring_size = size & 0x7FFFFFFFu;
   give_room(from.ring_begin, from.ring_size);
   from.ring_size = 0;
 }

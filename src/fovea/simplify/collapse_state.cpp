@@ -474,8 +474,10 @@ void Builder::add_edge_quadrics() {
     const Vec3d edge = state_.mesh.vertices[w].position - state_.mesh.vertices[v].position;
     const Vec3d upright = normalized(cross(normal_[c / 3], edge));
     const double d = -dot(upright, state_.mesh.vertices[v].position);
+    const double share = 0.5 * weight * dot(edge, edge);
     for (const std::uint32_t end : {v, w}) {
-      state_.mesh.quadrics[end].add_linear(upright, d, 0.5 * weight * weight_of(end) * dot(edge, edge));
+      state_.mesh.quadrics[end].add_linear(upright, d, share * weight_of(end));
+      state_.mesh.quadrics[end].weight += share;
     }
   };
   for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {

@@ -8,7 +8,7 @@ namespace fovea {
 
 /// A quadratic function of a point: p ↦ pᵀ A p + 2 b·p + c, with A symmetric (Garland & Heckbert
 /// 1997). Sums of weighted squared distances to planes and points have this form. `weight` is the
-/// area behind it, so that sqrt(value / weight) is a root-mean-square distance.
+/// sum of those weights (importance aside), so that sqrt(value / weight) is a root-mean-square distance.
 struct Quadric {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   double bx = 0, by = 0, bz = 0;
@@ -24,7 +24,7 @@ struct Quadric {
   }
   friend Quadric operator+(Quadric a, const Quadric& b) { return a += b; }
 
-  /// Adds w · q; the area behind it is that of q, whatever w.
+  /// Adds w · q; its weight is that of q, whatever w.
   void add_scaled(const Quadric& q, double w) {
     xx += w * q.xx, xy += w * q.xy, xz += w * q.xz, yy += w * q.yy, yz += w * q.yz, zz += w * q.zz;
     bx += w * q.bx, by += w * q.by, bz += w * q.bz;
