@@ -33,8 +33,9 @@ struct SplitPart {
 /// Makes one mesh of the parts of a mesh: welds vertices with bit-equal positions (and position
 /// morphs) over all parts, builds one layer per attribute with one value per vertex and distinct
 /// bits, and drops triangles that use a vertex twice after welding, which `context` is told
-/// ("degenerate-triangles", with `place`). Joints and weights of all sets share their corner map, so
-/// that an influence list is never mixed. -0 and +0 weld. Parts with `part.raw` set contribute no
+/// ("degenerate-triangles", with `place`). No other triangle is dropped: those given twice, either way
+/// round or in two parts, can be seen. Joints and weights of all sets share their corner map, so that an
+/// influence list is never mixed. -0 and +0 weld. Parts with `part.raw` set contribute no
 /// triangles but keep their place.
 ///
 /// Throws Error(format) for an index out of range or a position that is not finite, Error(limit) if
