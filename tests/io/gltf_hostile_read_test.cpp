@@ -321,68 +321,103 @@ TEST(GltfHostile, PositionsAndIndicesAreNamedByNumber) {
   }
 }
 
+/// Ways of a small file to ask for more than a million bytes.
+const std::function<void(GltfBuilder&)> kTricks[] = {
+    // zeros without a buffer view
+    [](GltfBuilder& b) {
+      b.json["accessors"][0] = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 100'000'000}};
+    },
+    // many primitives over one array
+    [](GltfBuilder& b) {
+      b.json["accessors"][0] = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 1000}};
+      const Json primitive = b.json["meshes"][0]["primitives"][0];
+      for (int i = 0; i < 500; ++i) b.json["meshes"][0]["primitives"].push_back(primitive);
+    },
+    // many layers that share nothing
+    [](GltfBuilder& b) {
+      const Json primitive = b.json["meshes"][0]["primitives"][0];
+      for (int i = 0; i < 300; ++i) {
+        Json other = primitive;
+        other["attributes"]["_A" + std::to_string(i)] = 0;
+        b.json["meshes"][0]["primitives"].push_back(other);
+      }
+    },
+    // many samplers over one array
+    [](GltfBuilder& b) {
+      b.json["accessors"].push_back({{"componentType", 5126}, {"type", "SCALAR"}, {"count", 10'000}});
+      Json sampler = {{"input", 2}, {"output", 2}};
+      for (int i = 0; i < 100; ++i) b.json["animations"][0]["samplers"].push_back(sampler);
+      b.json["animations"][0]["channels"] = Json::array();
+    },
+    // many instances
+    [](GltfBuilder& b) {
+      b.json["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 20'000}});
+      b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 2;
+    },
+    // many nodes of two bytes each
+    [](GltfBuilder& b) {
+      for (int i = 0; i < 3000; ++i) b.json["nodes"].push_back(Json::object());
+    },
+    // many attributes
+    [](GltfBuilder& b) {
+      for (int i = 0; i < 100; ++i)
+        b.json["meshes"][0]["primitives"][0]["attributes"]["_A" + std::to_string(i)] = 0;
+    },
+    // many images of one view
+    [](GltfBuilder& b) {
+      const int view = b.add_view(std::vector<std::byte>(20'000));
+      for (int i = 0; i < 100; ++i)
+        b.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
+    }};
+
 TEST(GltfHostile, SmallFilesCannotAskForMuchMemory) {
-  ReadOptions options;
-  options.max_total_bytes = 1'000'000;
-  const std::function<void(GltfBuilder&)> tricks[] = {
-      // zeros without a buffer view
-      [](GltfBuilder& b) {
-        b.json["accessors"][0] = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 100'000'000}};
-      },
-      // many primitives over one array
-      [](GltfBuilder& b) {
-        b.json["accessors"][0] = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 1000}};
-        const Json primitive = b.json["meshes"][0]["primitives"][0];
-        for (int i = 0; i < 500; ++i) b.json["meshes"][0]["primitives"].push_back(primitive);
-      },
-      // many layers that share nothing
-      [](GltfBuilder& b) {
-        const Json primitive = b.json["meshes"][0]["primitives"][0];
-        for (int i = 0; i < 300; ++i) {
-          Json other = primitive;
-          other["attributes"]["_A" + std::to_string(i)] = 0;
-          b.json["meshes"][0]["primitives"].push_back(other);
-        }
-      },
-      // many samplers over one array
-      [](GltfBuilder& b) {
-        b.json["accessors"].push_back({{"componentType", 5126}, {"type", "SCALAR"}, {"count", 10'000}});
-        Json sampler = {{"input", 2}, {"output", 2}};
-        for (int i = 0; i < 100; ++i) b.json["animations"][0]["samplers"].push_back(sampler);
-        b.json["animations"][0]["channels"] = Json::array();
-      },
-      // many instances
-      [](GltfBuilder& b) {
-        b.json["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 20'000}});
-        b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 2;
-      },
-      // many nodes of two bytes each
-      [](GltfBuilder& b) {
-        for (int i = 0; i < 3000; ++i) b.json["nodes"].push_back(Json::object());
-      },
-      // many attributes
-      [](GltfBuilder& b) {
-        for (int i = 0; i < 100; ++i)
-          b.json["meshes"][0]["primitives"][0]["attributes"]["_A" + std::to_string(i)] = 0;
-      },
-      // many images of one view
-      [](GltfBuilder& b) {
-        const int view = b.add_view(std::vector<std::byte>(20'000));
-        for (int i = 0; i < 100; ++i)
-          b.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
-      }};
-  int number = 0;
-  for (const auto& trick : tricks) {
-    GltfBuilder builder = GltfBuilder::triangle();
-    trick(builder);
-    try {
-      read(builder.glb(), options);
-      ADD_FAILURE() << "trick " << number << " worked";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), ErrorKind::limit) << number << ": " << e.what();
+  ReadOptions few_bytes, few_times;
+  few_bytes.max_total_bytes = 1'000'000;
+  few_times.max_expansion = 1;  // of 1 MiB, which smaller files count as
+  for (const ReadOptions& options : {few_bytes, few_times}) {
+    int number = 0;
+    for (const auto& trick : kTricks) {
+      GltfBuilder builder = GltfBuilder::triangle();
+      trick(builder);
+      try {
+        read(builder.glb(), options);
+        ADD_FAILURE() << "trick " << number << " worked";
+      } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::limit) << number << ": " << e.what();
+      }
+      ++number;
     }
-    ++number;
   }
+}
+
+/// A triangle with an animation of `count` times and values of 4 bytes each, none of them in the file.
+GltfBuilder zeros(std::size_t count) {
+  GltfBuilder b = GltfBuilder::triangle();
+  b.json["accessors"].push_back({{"componentType", 5126}, {"type", "SCALAR"}, {"count", count}});
+  b.json["animations"] = {{{"samplers", {{{"input", 2}, {"output", 2}}}}, {"channels", Json::array()}}};
+  return b;
+}
+
+TEST(GltfHostile, WithoutOptionsASmallFileExpandsTo512MiB) {
+  EXPECT_NO_THROW(read(zeros(1'000'000).glb()));
+  for (const std::size_t count : {68'000'000, 400'000'000}) {
+    try {
+      read(zeros(count).glb());
+      ADD_FAILURE() << count << " zeros were read";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), ErrorKind::limit) << e.what();
+      EXPECT_NE(e.hint().find("max-expansion"), std::string::npos) << e.hint();
+    }
+  }
+}
+
+TEST(GltfHostile, ALargerFileMayExpandToMore) {
+  ReadOptions options;
+  options.max_expansion = 1;
+  GltfBuilder builder = zeros(150'000);
+  EXPECT_THROW(read(builder.glb(), options), Error);
+  builder.add_view(std::vector<std::byte>(2'000'000));
+  EXPECT_NO_THROW(read(builder.glb(), options));
 }
 
 TEST(GltfHostile, ElementLimitIsAnOption) {
@@ -435,6 +470,20 @@ TEST_F(GltfFolder, ExternalBuffersAndImages) {
   const Model model = read(test::to_bytes(builder.json.dump()), {}, root_ / "model");
   EXPECT_EQ(model.images.at(0).uri, "pic.png");
   EXPECT_EQ(model.images[0].bytes.size(), 8u);
+}
+
+TEST_F(GltfFolder, FilesBesideTheModelAllowForTheirOwnBytes) {
+  ReadOptions options;
+  options.max_expansion = 2;
+  std::vector<std::byte> large = data_;
+  large.resize(3'000'000);
+  write("model/large.bin", large);
+  EXPECT_NO_THROW(read_with_uri("large.bin", options));
+  // One file under two names, read twice, counts once.
+  GltfBuilder builder = GltfBuilder::triangle();
+  builder.json["buffers"][0]["uri"] = "large.bin";
+  builder.json["images"] = Json::array({{{"uri", "large.bin"}}, {{"uri", "./large.bin"}}});
+  EXPECT_THROW(read(test::to_bytes(builder.json.dump()), options, root_ / "model"), Error);
 }
 
 TEST_F(GltfFolder, NothingOutsideOfTheFolderIsRead) {

@@ -77,7 +77,7 @@ TEST(Read, PipesAreReadToTheirEnd) {
 TEST(Read, OptionsAreDescribedAndChecked) {
   ReadOptions options;
   OptionList list = describe(options);
-  ASSERT_EQ(list.size(), 3u);
+  ASSERT_EQ(list.size(), 4u);
   list[1].parse("17");
   EXPECT_EQ(options.max_elements, 17);
   EXPECT_TRUE(test::error_of([&] { list[0].parse("0"); }));

@@ -15,6 +15,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/io/assimp_scene.h"
+#include "fovea/io/byte_budget.h"
 #include "fovea/io/child_process.h"
 
 namespace fovea {
@@ -167,7 +168,7 @@ std::vector<std::byte> import_and_dump(std::span<const std::byte> bytes, const f
 Model read_assimp(std::span<const std::byte> bytes, const fs::path& path, const ReadOptions& options,
                   Context& context) {
   const std::string place = path.string();
-  const auto limit = static_cast<std::uint64_t>(std::max<std::int64_t>(options.max_total_bytes, 0));
+  const std::uint64_t limit = ByteBudget(options, bytes.size()).limit();
   const std::vector<std::byte> dump = run_in_child([&] { return import_and_dump(bytes, path, options); },
                                                    {limit, limit, 600}, place, context);
   Assimp::Importer importer;

@@ -111,7 +111,7 @@ void send_error(int to, const Error& error) {
     send_error(to, error);
   } catch (const std::bad_alloc&) {
     send_error(to, Error(ErrorKind::limit, "reading this file needs more memory than is allowed", place,
-                         "raise --max-total-bytes"));
+                         "raise --max-total-bytes or --max-expansion"));
   } catch (const std::exception& error) {
     send_error(to, Error(ErrorKind::format, error.what(), place));
   } catch (...) {
@@ -214,7 +214,7 @@ std::vector<std::byte> run_in_child(const std::function<std::vector<std::byte>()
   const std::uint64_t most = header.is_error ? std::uint64_t{1} << 20 : limits.result_bytes;
   if (header.size > most) {
     throw Error(ErrorKind::limit, fmt::format("the file expands to {} bytes", header.size), place,
-                "raise --max-total-bytes");
+                "raise --max-total-bytes or --max-expansion");
   }
   if (header.is_error) {
     std::string text(header.size, '\0');

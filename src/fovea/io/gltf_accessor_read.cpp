@@ -224,7 +224,7 @@ std::span<const std::byte> DataReader::buffer(int buffer) {
   std::span<const std::byte> bytes;
   if (const auto uri = json.find("uri")) {
     auto known = loaded_buffers_.find(buffer);
-    if (known == loaded_buffers_.end()) known = loaded_buffers_.emplace(buffer, load_uri(*uri, length)).first;
+    if (known == loaded_buffers_.end()) known = loaded_buffers_.emplace(buffer, load_uri(*uri)).first;
     bytes = known->second;
   } else if (buffer == 0 && binary_) {
     bytes = *binary_;
@@ -238,13 +238,12 @@ std::span<const std::byte> DataReader::buffer(int buffer) {
   return bytes.first(static_cast<std::size_t>(length));
 }
 
-std::vector<std::byte> DataReader::load_uri(const JsonView& uri, std::uint64_t length) {
+std::vector<std::byte> DataReader::load_uri(const JsonView& uri) {
   const std::string& text = uri.text();
   if (is_data_uri(text)) {
     budget_.charge(text.size(), 1, uri.place());
     return at_place(uri, [&] { return decode_data_uri(text).bytes; });
   }
-  budget_.charge(length, 1, uri.place());
   return side_file(at_place(uri, [&] { return relative_path_of_uri(text); }), uri);
 }
 
@@ -254,6 +253,9 @@ std::vector<std::byte> DataReader::side_file(const std::string& relative_path, c
     throw Error(ErrorKind::input,
                 fmt::format("the file {} is not in the model's folder", shown(relative_path)), at.place());
   }
+  const std::uint64_t size = std::filesystem::file_size(*file);
+  if (side_files_.insert(*file).second) budget_.add_input(size);
+  budget_.charge(size, 1, at.place());
   return read_file(*file, options_.max_file_bytes);
 }
 

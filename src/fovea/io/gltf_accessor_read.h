@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,13 +52,13 @@ class DataReader {
   Accessor read(int accessor);
   /// The bytes of a buffer view, decompressed. Valid as long as the reader.
   std::span<const std::byte> view(int view);
-  /// A file beside the model, within the limits. Throws Error(input), Error(format), Error(limit) with
-  /// the place of `at`.
+  /// A file beside the model, within the limits; its bytes are charged. Throws Error(input), Error(format),
+  /// Error(limit) with the place of `at`.
   std::vector<std::byte> side_file(const std::string& relative_path, const JsonView& at);
 
  private:
   std::span<const std::byte> buffer(int buffer);
-  std::vector<std::byte> load_uri(const JsonView& uri, std::uint64_t length);
+  std::vector<std::byte> load_uri(const JsonView& uri);
   std::span<const std::byte> range(int buffer, std::uint64_t offset, std::uint64_t length,
                                    const JsonView& at);
   std::span<const std::byte> compressed_view(int view, const JsonView& extension);
@@ -71,6 +72,7 @@ class DataReader {
   std::filesystem::path folder_;
   const ReadOptions& options_;
   ByteBudget& budget_;
+  std::set<std::filesystem::path> side_files_;
   std::map<int, std::vector<std::byte>> loaded_buffers_;
   std::map<int, std::vector<std::byte>> decoded_views_;
 };

@@ -29,7 +29,6 @@ std::string load_uri(ReadState& state, const JsonView& uri, EncodedImage& image)
     throw e.place().empty() ? e.within(uri.place()) : e;
   }
   image.bytes = to_bytes(state.data.side_file(image.uri, uri));
-  state.budget.charge(image.bytes.size(), 1, uri.place());
   return {};
 }
 

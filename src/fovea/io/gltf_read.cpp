@@ -68,7 +68,7 @@ Model read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& f
                 const std::string& place, const ReadOptions& options, Context& context) {
   gltf::GlbChunks chunks{bytes, 0, std::nullopt};
   if (gltf::is_glb(bytes)) chunks = gltf::split_glb(bytes, place);
-  ByteBudget budget(options.max_total_bytes);
+  ByteBudget budget(options, bytes.size());
   const gltf::Json json = gltf::parse_json(chunks.json, place, chunks.json_offset, budget);
   const gltf::JsonView root(json, "", place);
   Model model;

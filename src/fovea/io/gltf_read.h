@@ -34,7 +34,8 @@ namespace fovea {
 /// Throws Error(format) with "file/json/pointer" (or "file byte N" in the container or JSON syntax) for
 /// anything outside the specification that would make reading unsafe or meaningless, Error(unsupported)
 /// for a required extension as above or another glTF version, Error(limit), Error(input) for missing
-/// external files. Memory is bounded by ReadOptions::max_total_bytes, whatever the file claims.
+/// external files. Memory is bounded by ReadOptions::max_total_bytes and max_expansion,
+/// whatever the file claims.
 Model read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder,
                 const std::string& place, const ReadOptions& options, Context& context);
 

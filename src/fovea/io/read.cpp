@@ -103,6 +103,11 @@ OptionList describe(ReadOptions& options) {
                   &options.max_elements, "elements", 1});
   list.push_back({"max-total-bytes", "Refuse models whose decoded data is larger than this.",
                   &options.max_total_bytes, "bytes", 1});
+  list.push_back(
+      {"max-expansion",
+       "Refuse models whose decoded data is larger than their files by more than this; files below "
+       "1 MiB count as 1 MiB.",
+       &options.max_expansion, "times", 1});
   return list;
 }
 

@@ -17,7 +17,11 @@ namespace fovea {
 struct ReadOptions {
   std::int64_t max_file_bytes = std::int64_t{8} << 30;  ///< Of any one file, images included.
   std::int64_t max_elements = 400'000'000;  ///< Of any one accessor or index list: vertices, indices, keys.
-  std::int64_t max_total_bytes = std::int64_t{16} << 30;  ///< Of all decoded data of one model.
+  std::int64_t max_total_bytes = std::int64_t{8} << 30;  ///< Of all decoded data of one model.
+  /// Decoded data over the size of the model's files (1 MiB if they are smaller). Compression, sparse
+  /// arrays, zeros that a file need not hold and arrays used many times make a model larger than its
+  /// files: about 8 times if they are not compressed, 30 to 100 times if they are.
+  std::int64_t max_expansion = 512;
 };
 OptionList describe(ReadOptions& options);
 
