@@ -19,9 +19,10 @@ std::vector<SampleInfo> samples();
 
 /// Makes a sample: `vase` (a plain figure painted on a busy ground, after Yang et al. 2016), `arm` (a
 /// skinned, bending arm, after Munaretti 2007), `spheres` (two near spheres, one of which a morph
-/// target deforms, idem figure 3.4), `terrain` (heights with a photo-like texture, after Horbelt et
-/// al. 2001). Each has tens of thousands of triangles, real UV seams and textures made for it.
-/// `detail` scales the number of triangles (1 = default). Deterministic in the seed of `context`.
+/// target deforms, idem figure 3.4), `terrain` (a block of earth whose heights have a photo-like
+/// texture, after Horbelt et al. 2001). Each has tens of thousands of triangles, real UV seams and textures
+/// made for it. `detail` scales the number of triangles (1 = default). Deterministic in the seed of
+/// `context`.
 ///
 /// Throws Error(usage) for an unknown name, with the nearest one.
 Model make_sample(const std::string& name, double detail, Context& context);

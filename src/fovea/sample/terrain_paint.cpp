@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "fovea/base/parallel.h"
 #include "fovea/sample/noise.h"
@@ -23,9 +24,10 @@ struct Place {
   double lit = 1;     ///< Sunlight past the mountains and at its angle.
 };
 
-class Painter {
+/// Paints the land from above.
+class LandPainter {
  public:
-  Painter(const Landscape& land, int size, std::uint64_t seed, const Context& context)
+  LandPainter(const Landscape& land, int size, std::uint64_t seed, const Context& context)
       : land_(land),
         seed_(seed),
         relief_(make_relief(size + 1, context)),
@@ -34,7 +36,7 @@ class Painter {
         flow_(blur(land.flow, 1)) {}
 
   Color operator()(double s, double t) const {
-    const Place at = look({s, 1 - t});
+    const Place at = look({clamp01(s), clamp01(1 - t)});
     constexpr double kShore = 0.0012;
     if (at.height < -kShore) return grade(water(at), at);
     return grade(mix(water(at), dry_land(at), smooth_step(-kShore, kShore, at.height)), at);
@@ -143,13 +145,71 @@ class Painter {
   HeightMap relief_, light_, around_, flow_;
 };
 
+/// Paints what the cut through the earth shows.
+class CutPainter {
+ public:
+  CutPainter(const Landscape& land, std::uint64_t seed) : land_(land), seed_(seed) {}
+
+  /// A strip of two sides, the first of which is number `first` counted from the south through the east.
+  Color side(int first, double s, double t) const {
+    const double along = std::clamp(2 * s, 0.0, 2.0);
+    const int number = first + (along < 1 ? 0 : 1);
+    const double f = along < 1 ? along : along - 1;
+    const Vec2d corners[] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}, {0, 1}};
+    const Vec2d p = corners[number] * (1 - f) + corners[number + 1] * f;
+    const double brightness[] = {0.80, 0.72, 0.90, 1.0};  // The sun stands in the north-west.
+    const double height = mix(land_.base, land_.crest, t);
+    return earth({p.x, p.y, height}, land_.ground.read(p.x, p.y) - height) * brightness[number];
+  }
+
+  Color bottom(double s, double t) const {
+    return rgb(0x51473D) * (1 + 0.1 * fractal_noise(Vec2d{s, t} * 9.0, 4, seed_ + 90));
+  }
+
+ private:
+  double noise(Vec3d p, double scale, int octaves, int which) const {
+    return fractal_noise(p * scale, octaves, seed_ + static_cast<std::uint64_t>(which));
+  }
+
+  Color earth(Vec3d p, double depth) const {
+    const double lake = land_.water - p.z;
+    if (depth < 0 && lake > 0) return mix(rgb(0x4E8C86), rgb(0x123A52), smooth_step(0, 0.03, lake));
+    const double uneven = noise(p, 22, 4, 91);
+    const Color soil = mix(rgb(0x3B2C20), rgb(0x4E3A28), clamp01(0.5 + noise(p, 120, 3, 92)));
+    const Color loam = mix(rgb(0x7E5E3E), rgb(0x9A7A52), clamp01(0.5 + 0.8 * noise(p, 80, 4, 93)));
+    const Color c = mix(loam, rock(p), smooth_step(0.012, 0.020, depth + 0.008 * uneven));
+    return mix(soil, c, smooth_step(0.003, 0.006, depth + 0.003 * uneven));
+  }
+
+  /// Layers that run through the whole block, slanted and bent.
+  Color rock(Vec3d p) const {
+    const double level = p.z + 0.05 * p.x - 0.03 * p.y + 0.012 * noise(p, 3, 3, 94);
+    const double layer = fractal_noise(Vec2d{level * 70, 0.5}, 3, seed_ + 95);
+    const double fine = 0.5 + 0.5 * std::sin(level * 900 + 3 * noise(p, 30, 2, 96));
+    Color c = mix(rgb(0x6A5F55), rgb(0xA8957C), clamp01(0.5 + 0.9 * layer));
+    c = mix(c, rgb(0x8A5F45), 0.6 * smooth_step(0.15, 0.3, layer));
+    return c * (0.92 + 0.10 * fine + 0.12 * noise(p, 140, 3, 97));
+  }
+
+  const Landscape& land_;
+  std::uint64_t seed_;
+};
+
 }  // namespace
 
-Image8 paint_terrain(const Landscape& land, int size, std::uint64_t seed, const Context& context) {
-  Image8 image(size, size, 3, ColorEncoding::srgb);
-  const Painter painter(land, size, seed, context);
-  const auto extent = static_cast<double>(size);
-  paint(image, {0, 0, extent, extent}, 0, context, [&](double s, double t) { return painter(s, t); });
+Image8 paint_terrain(const Landscape& land, const TerrainAtlas& atlas, std::uint64_t seed,
+                     const Context& context) {
+  Image8 image(TerrainAtlas::kWidth, TerrainAtlas::kHeight, 3, ColorEncoding::srgb);
+  const LandPainter from_above(land, static_cast<int>(atlas.top.width), seed, context);
+  const CutPainter cut(land, seed);
+  const auto add = [&](const Chart& chart, const std::function<Color(double, double)>& color) {
+    paint(image, chart, TerrainAtlas::kGutter, context, color);
+  };
+  add(atlas.top, [&](double s, double t) { return from_above(s, t); });
+  for (const int strip : {0, 1}) {
+    add(atlas.sides[strip], [&](double s, double t) { return cut.side(2 * strip, s, t); });
+  }
+  add(atlas.bottom, [&](double s, double t) { return cut.bottom(s, t); });
   return image;
 }
 
