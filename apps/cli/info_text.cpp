@@ -203,9 +203,9 @@ std::string bytes_table(const FileBytes& bytes) {
 
 std::string info_text(const std::string& path, const Model& model, const ModelFacts& facts,
                       const Snapshot& totals, bool everything) {
-  std::string text =
-      fmt::format("{}: {}, {}{}\n", printable(path), totals.bytes.format, bytes_text(totals.bytes.files),
-                  facts.generator.empty() ? "" : ", made by " + printable(facts.generator));
+  std::string text = fmt::format("{}: {}, {}{}\n", printable(path), to_string(totals.bytes.format),
+                                 bytes_text(totals.bytes.files),
+                                 facts.generator.empty() ? "" : ", made by " + printable(facts.generator));
   text += summary_text(model, facts, totals);
   text += meshes_text(model, facts, everything);
   text += materials_text(model, facts, everything);

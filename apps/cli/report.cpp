@@ -19,6 +19,14 @@ struct ToJson {
   Json operator()(const Option::Choice& c) const { return c.names.at(static_cast<std::size_t>(c.get())); }
 };
 
+Json to_json(const FileBytes& bytes) {
+  return {{"files", bytes.files},
+          {"geometry", bytes.kinds.geometry},
+          {"images", bytes.kinds.images},
+          {"animation", bytes.kinds.animation},
+          {"other", bytes.kinds.other}};
+}
+
 }  // namespace
 
 Json number_json(double number) { return std::isfinite(number) ? Json(number) : Json(); }
@@ -68,7 +76,7 @@ Json to_json(const Snapshot& s) {
 }
 
 Json file_json(const std::string& path, const FileBytes& bytes) {
-  return {{"path", path}, {"format", bytes.format}, {"bytes", bytes.files}};
+  return {{"path", path}, {"format", to_string(bytes.format)}, {"bytes", bytes.files}};
 }
 
 std::string comparison_text(const Snapshot& before, const Snapshot& after) {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "arguments.h"
-#include "file_bytes.h"
 #include "fovea/base/context.h"
 #include "fovea/base/error.h"
+#include "fovea/io/file_bytes.h"
 #include "fovea/model/model.h"
 #include "session.h"
 

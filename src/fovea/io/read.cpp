@@ -111,6 +111,18 @@ OptionList describe(ReadOptions& options) {
   return list;
 }
 
+const char* to_string(FileFormat format) {
+  switch (format) {
+    case FileFormat::gltf: return "gltf";
+    case FileFormat::glb: return "glb";
+    case FileFormat::obj: return "obj";
+    case FileFormat::ply: return "ply";
+    case FileFormat::stl: return "stl";
+    case FileFormat::other: break;
+  }
+  return "other";
+}
+
 FileFormat detect_format(std::span<const std::byte> head, const fs::path& path) {
   const std::string_view text = as_text(head);
   const FileFormat by_name = format_of_extension(path);

@@ -27,6 +27,7 @@ OptionList describe(ReadOptions& options);
 
 /// File formats that Fovea tells apart, by content first and extension second.
 enum class FileFormat { gltf, glb, obj, ply, stl, other };
+const char* to_string(FileFormat format);
 
 /// Looks at the first bytes, then at the extension; `other` is left to the general importer.
 FileFormat detect_format(std::span<const std::byte> head, const std::filesystem::path& path);

@@ -1,4 +1,4 @@
-#include "file_bytes.h"
+#include "fovea/io/file_bytes.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "fovea/base/error.h"
-#include "fovea/io/read.h"
 
-namespace fovea::cli {
+namespace fovea {
 
 namespace fs = std::filesystem;
 using Plain = nlohmann::json;
@@ -169,18 +168,6 @@ Plain read_json(std::ifstream& in, FileFormat format, std::uint64_t file_size) {
   return Plain::parse(read_text(in, offset, size), nullptr, false);
 }
 
-const char* name_of(FileFormat format) {
-  switch (format) {
-    case FileFormat::gltf: return "gltf";
-    case FileFormat::glb: return "glb";
-    case FileFormat::obj: return "obj";
-    case FileFormat::ply: return "ply";
-    case FileFormat::stl: return "stl";
-    case FileFormat::other: break;
-  }
-  return "other";
-}
-
 // Bytes of the image files beside a glTF file.
 std::uint64_t external_image_bytes(const GltfMeter& meter, const Model& model) {
   std::uint64_t sum = 0;
@@ -224,7 +211,7 @@ FileBytes measure(const fs::path& path, const Model& model, std::span<const fs::
   const bool gltf = format == FileFormat::gltf || format == FileFormat::glb;
   const Plain root = gltf ? read_json(in, format, size) : Plain();
 
-  FileBytes result{name_of(format), size, {}};
+  FileBytes result{format, size, {}};
   if (root.is_object()) {
     const GltfMeter meter(root);
     const std::uint64_t images = external_image_bytes(meter, model);
@@ -248,12 +235,4 @@ FileBytes measure_output(std::span<const fs::path> files, const Model& model) {
   return measure(files.front(), model, files);
 }
 
-nlohmann::ordered_json to_json(const FileBytes& bytes) {
-  return {{"files", bytes.files},
-          {"geometry", bytes.kinds.geometry},
-          {"images", bytes.kinds.images},
-          {"animation", bytes.kinds.animation},
-          {"other", bytes.kinds.other}};
-}
-
-}  // namespace fovea::cli
+}  // namespace fovea
