@@ -44,8 +44,7 @@ Model triangle_with_skin(const std::vector<float>& joints, const std::vector<flo
       array.storage = is_joint ? joint_storage : storage;
       const auto& from = is_joint ? joints : weights;
       for (int v = 0; v < 3; ++v) {
-        array.values.insert(array.values.end(), from.begin() + static_cast<long>(4 * set),
-                            from.begin() + static_cast<long>(4 * set + 4));
+        for (std::size_t k = 0; k < 4; ++k) array.values.push_back(from[4 * set + k]);
       }
       builder.part().attributes.push_back(array);
     }
