@@ -146,20 +146,25 @@ void Engine::subtract_channel(Quadric& q, const Channel& channel, std::uint32_t 
   scratch.find(state_, channel, a, b);
   for (std::uint32_t root = 0; root < scratch.size(); ++root) {
     if (scratch[root].root != root) continue;
-    std::fill(total, total + stride, 0.0);
-    const std::uint32_t held = scratch.held_value(channel, a, b, root);
+    const double* of_class = nullptr;
     for (std::size_t i = root; i < scratch.size(); ++i) {
       if (scratch[i].root != root) continue;
       const double* qi = channel.value_quadric(scratch[i].value);
-      for (std::size_t k = 0; k < stride; ++k) total[k] += qi[k];
+      if (of_class == nullptr) {
+        of_class = qi;
+      } else {
+        for (std::size_t k = 0; k < stride; ++k) total[k] = of_class[k] + qi[k];
+        of_class = total;
+      }
     }
+    const std::uint32_t held = scratch.held_value(channel, a, b, root);
     if (held == kInvalid) {
-      reduce(q, total, width);
+      reduce(q, of_class, width);
     } else {
       const double scale = channel.scale[state_.slot_of_vertex(a)];
       const float* value = channel.value(held);
       const double scaled[2] = {scale * value[0], scale * value[1]};
-      hold(q, total, width, scaled);
+      hold(q, of_class, width, scaled);
     }
   }
 }

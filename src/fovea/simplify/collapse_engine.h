@@ -21,15 +21,19 @@ struct CollapseOutcome {
 ///
 ///     queue every edge by its cost, every component by the cost of losing it
 ///     while there are too many triangles
-///       take the cheapest
-///       if it is a component: drop its triangles
-///       find the cheapest legal position for the merged vertex
-///       none, or dearer than thought: put it back at that price
-///       merge quadrics, fit attribute values, rewire, record
-///       cost the edges around the merged vertex again
+///       take the cheapest few
+///       put back those that cost more by now than they were queued for
+///       for each of the others
+///         if it is a component: drop its triangles
+///         find the cheapest legal position for the merged vertex
+///         none, or dearer than thought: put it back at that price
+///         merge quadrics, fit attribute values, rewire, record
 ///
-/// Where the
-/// surface's topology forbids a collapse it is put off by a constant factor rather than refused,
+/// A merge only adds to the cost of the edges around, so what they are queued for stays a lower bound
+/// and is corrected when they come up. A few at a time, because most of the time goes into waiting for
+/// memory, and that of several edges can be waited for together.
+///
+/// Where the surface's topology forbids a collapse it is put off by a constant factor rather than refused,
 /// unless `keep_topology`: a model of many handles and parts still reaches its target, late.
 ///
 /// `state` is used up. Stops at `target_triangles`, or when every collapse left exceeds `max_error`

@@ -189,9 +189,8 @@ OptionList describe(SimplifyOptions& o) {
        "Where a merged vertex goes: at the least error, or at an end of its edge so that all vertices are "
        "original.",
        choice(o.placement, {"optimal", "half-edge"}), ""},
-      {"uv-weight",
-       "How much sliding textures count against moving surfaces; 1: the same length counts the same.",
-       &o.uv_weight, "", 0, 1e6},
+      {"uv-weight", "How much sliding textures count; higher keeps patterns in place.", &o.uv_weight, "", 0,
+       1e6},
       {"normal-weight", "How much turning normals count; higher keeps shading.", &o.normal_weight, "", 0,
        1e6},
       {"color-weight", "How much changing vertex colours count.", &o.color_weight, "", 0, 1e6},

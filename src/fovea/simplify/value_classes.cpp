@@ -19,6 +19,7 @@ std::size_t ValueClasses::add(std::uint32_t value, bool at_b) {
 }
 
 void ValueClasses::join(std::size_t i, std::size_t j) {
+  if (entries_[i].root == entries_[j].root) return;
   const std::uint32_t keep = std::min(entries_[i].root, entries_[j].root);
   const std::uint32_t drop = std::max(entries_[i].root, entries_[j].root);
   for (Entry& e : entries_) {
@@ -30,25 +31,28 @@ void ValueClasses::find(const CollapseState& state, const Channel& channel, std:
                         std::uint32_t b) {
   entries_.clear();
   const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
+  if (single_a < Channel::kMany) entries_.push_back({single_a, 0, false});
+  if (single_b < Channel::kMany) add(single_b, true);
   if (single_a < Channel::kMany && single_b < Channel::kMany) {
-    entries_.push_back({single_a, 0, false});
-    entries_.push_back({single_b, 0, true});
+    join(0, 1);
     return;
   }
+  // Only the rings of vertices with several values are looked at, and the first of them for triangles
+  // on the edge.
   const CollapseMesh& mesh = state.mesh;
-  mesh.for_ring(a, [&](std::uint32_t c) {
-    if (channel.corner_value[c] != kInvalid) add(channel.corner_value[c], false);
-  });
-  mesh.for_ring(b, [&](std::uint32_t c) {
-    if (channel.corner_value[c] != kInvalid) add(channel.corner_value[c], true);
-  });
-  mesh.for_ring(a, [&](std::uint32_t c) {
-    if (channel.corner_value[c] == kInvalid) return;
-    for (const std::uint32_t other : {CollapseMesh::next(c), CollapseMesh::previous(c)}) {
-      if (mesh.vertex(other) != b) continue;
-      join(index_of(channel.corner_value[c]), index_of(channel.corner_value[other]));
-    }
-  });
+  const auto look_around = [&](std::uint32_t v, std::uint32_t other, bool joins) {
+    mesh.for_ring(v, [&](std::uint32_t c) {
+      const std::uint32_t value = channel.corner_value[c];
+      if (value == kInvalid) return;
+      const std::size_t own = add(value, v == b);
+      if (!joins) return;
+      for (const std::uint32_t d : {CollapseMesh::next(c), CollapseMesh::previous(c)}) {
+        if (mesh.vertex(d) == other) join(own, add(channel.corner_value[d], other == b));
+      }
+    });
+  };
+  if (single_a == Channel::kMany) look_around(a, b, true);
+  if (single_b == Channel::kMany) look_around(b, a, single_a != Channel::kMany);
 }
 
 std::uint32_t ValueClasses::held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,

@@ -39,7 +39,7 @@ class ValueClasses {
   std::size_t add(std::uint32_t value, bool at_b);
   void join(std::size_t i, std::size_t j);
 
-  std::vector<Entry> entries_;  // a's values first, then b's
+  std::vector<Entry> entries_;
 };
 
 }  // namespace fovea
