@@ -147,16 +147,15 @@ void Engine::subtract_channel(Quadric& q, const Channel& channel, std::uint32_t 
   for (std::uint32_t root = 0; root < scratch.size(); ++root) {
     if (scratch[root].root != root) continue;
     const double* of_class = nullptr;
-    for (std::size_t i = root; i < scratch.size(); ++i) {
-      if (scratch[i].root != root) continue;
-      const double* qi = channel.value_quadric(scratch[i].value);
+    scratch.for_class(root, [&](const ValueClasses::Entry& entry) {
+      const double* qi = channel.value_quadric(entry.value);
       if (of_class == nullptr) {
         of_class = qi;
       } else {
         for (std::size_t k = 0; k < stride; ++k) total[k] = of_class[k] + qi[k];
         of_class = total;
       }
-    }
+    });
     const std::uint32_t held = scratch.held_value(channel, a, b, root);
     if (held == kInvalid) {
       reduce(q, of_class, width);

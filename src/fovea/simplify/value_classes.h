@@ -17,7 +17,8 @@ class ValueClasses {
  public:
   struct Entry {
     std::uint32_t value = kInvalid;
-    std::uint32_t root = 0;  ///< Index of the class's first entry.
+    std::uint32_t root = 0;         ///< Index of the class's first entry.
+    std::uint32_t next = kInvalid;  ///< Index of the next entry of the class.
     bool at_b = false;
   };
 
@@ -26,6 +27,11 @@ class ValueClasses {
 
   std::size_t size() const { return entries_.size(); }
   const Entry& operator[](std::size_t i) const { return entries_[i]; }
+  /// Calls f(entry) for the entries of class `root`.
+  template <class F>
+  void for_class(std::uint32_t root, F&& f) const {
+    for (std::uint32_t i = root; i != kInvalid; i = entries_[i].next) f(entries_[i]);
+  }
   /// For texture coordinates, the value that class `root` must keep so that no texels from beyond its
   /// chart come in: a value that does not join stays; an inner vertex that joins a seam takes the
   /// seam's value; where a seam's sides join they take the value at its end. kInvalid if the class may
@@ -33,13 +39,18 @@ class ValueClasses {
   std::uint32_t held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,
                            std::uint32_t root) const;
   /// Index of the entry of a value that belongs to a or b.
-  std::size_t index_of(std::uint32_t value) const;
+  std::uint32_t index_of(std::uint32_t value) const;
 
  private:
-  std::size_t add(std::uint32_t value, bool at_b);
-  void join(std::size_t i, std::size_t j);
+  std::uint32_t add(std::uint32_t value, bool at_b);
+  void join(std::uint32_t i, std::uint32_t j);
+  std::size_t slot_of(std::uint32_t value) const;
+  void rebuild_table();
 
   std::vector<Entry> entries_;
+  // A pole can have thousands of values: beyond a few, they are found by a hash table (open addressing,
+  // entries by index, a power of two in size).
+  std::vector<std::uint32_t> table_;
 };
 
 }  // namespace fovea

@@ -27,11 +27,9 @@ void ValueMerge::plan(std::uint32_t a, std::uint32_t b, Vec3d p) {
 
 void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t root, std::uint32_t held) {
   const float *at_a = nullptr, *at_b = nullptr;
-  for (std::size_t i = root; i < plan.classes.size(); ++i) {
-    const auto& entry = plan.classes[i];
-    if (entry.root != root) continue;
+  plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
     (entry.at_b ? at_b : at_a) = channel.value(entry.value);
-  }
+  });
   if (at_a == nullptr) at_a = at_b;
   if (at_b == nullptr) at_b = at_a;
   const auto width = static_cast<std::size_t>(channel.width);
@@ -59,11 +57,10 @@ void ValueMerge::fit(const Channel& channel, const Plan& plan, std::uint32_t roo
   const double scale = channel.scale[slot_];
   const std::size_t stride = attribute_stride(channel.fit_width);
   sum_.assign(stride, 0.0);
-  for (std::size_t i = root; i < plan.classes.size(); ++i) {
-    if (plan.classes[i].root != root) continue;
-    const double* q = channel.value_quadric(plan.classes[i].value);
+  plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
+    const double* q = channel.value_quadric(entry.value);
     for (std::size_t k = 0; k < stride; ++k) sum_[k] += q[k];
-  }
+  });
   if (!(sum_[stride - 1] > 0) || !(scale > 0)) return;
   double fitted[3] = {};
   for (int k = 0; k < channel.fit_width; ++k) {
@@ -132,10 +129,14 @@ const float* ValueMerge::planned(std::size_t channel, std::uint32_t value) const
 
 /// A class keeps the number of its value at b, if it has one there.
 std::uint32_t ValueMerge::kept_value(const ValueClasses& classes, std::uint32_t root) const {
-  for (std::size_t i = root; i < classes.size(); ++i) {
-    if (classes[i].root == root && classes[i].at_b) return classes[i].value;
-  }
-  return classes[root].value;
+  std::uint32_t kept = classes[root].value;
+  bool found = false;
+  classes.for_class(root, [&](const ValueClasses::Entry& entry) {
+    if (!entry.at_b || found) return;
+    kept = entry.value;
+    found = true;
+  });
+  return kept;
 }
 
 void ValueMerge::record_class(const Channel& channel, const Plan& plan, std::uint32_t root,
@@ -143,11 +144,10 @@ void ValueMerge::record_class(const Channel& channel, const Plan& plan, std::uin
   const std::uint32_t first = channel.first_value[mesh];
   for (const ChannelSlice& slice : channel.slices[mesh]) {
     if (slice.layer != kInvalid) {
-      for (std::size_t i = root; i < plan.classes.size(); ++i) {
-        const auto& entry = plan.classes[i];
-        if (entry.root != root || entry.value == kept) continue;
-        record.joins.push_back({slice.layer, ValueId{entry.value - first}, ValueId{kept - first}});
-      }
+      plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
+        if (entry.value != kept)
+          record.joins.push_back({slice.layer, ValueId{entry.value - first}, ValueId{kept - first}});
+      });
     }
     record.writes.push_back({slice.layer, kept - first});
     const float* values = channel.value(kept) + slice.offset;
@@ -165,13 +165,12 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
       if (plan.classes[root].root != root) continue;
       const std::uint32_t kept = kept_value(plan.classes, root);
       if (!channel.quadric.empty()) {
-        for (std::size_t j = root; j < plan.classes.size(); ++j) {
-          const auto& entry = plan.classes[j];
-          if (entry.root != root || entry.value == kept) continue;
+        double* to = channel.value_quadric(kept);
+        plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
+          if (entry.value == kept) return;
           const double* from = channel.value_quadric(entry.value);
-          double* to = channel.value_quadric(kept);
           for (std::size_t k = 0; k < stride; ++k) to[k] += from[k];
-        }
+        });
       }
       std::copy_n(plan.values.data() + root * static_cast<std::size_t>(channel.width), channel.width,
                   channel.value(kept));
