@@ -68,6 +68,24 @@ TEST(CollapseMesh, UnlinkingEmptiesARing) {
   EXPECT_EQ(left, 2u);
 }
 
+TEST(CollapseMesh, JoinedRingsHoldTheCornersOfBoth) {
+  CollapseMesh mesh = make(test::icosphere(2));
+  std::multiset<std::uint32_t> expected;
+  const std::uint32_t to = 0;
+  for (const std::uint32_t c : mesh.ring(to)) expected.insert(c);
+  // One ring after the other goes to the same vertex, so that it outgrows its room again and again.
+  for (std::uint32_t from = 1; from < 60; ++from) {
+    for (const std::uint32_t c : mesh.ring(from)) expected.insert(c);
+    mesh.join_rings(from, to);
+    EXPECT_TRUE(mesh.ring(from).empty());
+    const auto ring = mesh.ring(to);
+    EXPECT_EQ(std::multiset<std::uint32_t>(ring.begin(), ring.end()), expected);
+  }
+  for (std::uint32_t v = 60; v < mesh.vertices.size(); ++v) {
+    for (const std::uint32_t c : mesh.ring(v)) EXPECT_EQ(mesh.vertex(c), v);
+  }
+}
+
 TEST(CollapseMesh, CountsFacesOnEdges) {
   const CollapseMesh mesh = make(test::non_manifold_edge());
   const auto edges_with = [&](std::uint32_t faces) {

@@ -125,6 +125,22 @@ TEST(AttributeQuadric, ReducedIsTheLeastErrorOverTheValue) {
   }
 }
 
+TEST(AttributeQuadric, HeldIsTheErrorOfThatValue) {
+  Random random(5);
+  for (int trial = 0; trial < 5; ++trial) {
+    const auto triangles = random_triangles(random, 6);
+    std::vector<double> value;
+    Quadric q = attribute_quadric(triangles, value);
+    const double s = random.uniform(-2, 2);
+    hold(q, value.data(), 1, &s);
+    for (int i = 0; i < 5; ++i) {
+      const Vec3d p = random_point(random);
+      const double expected = oracle::attribute_error(triangles, p, s);
+      EXPECT_NEAR(q.value(p), expected, 1e-7 * (1 + expected));
+    }
+  }
+}
+
 TEST(AttributeQuadric, IsNotFittedWithoutWeight) {
   Quadric q;
   q.add_point({0, 0, 0}, 1);

@@ -263,6 +263,59 @@ TEST(Simplify, TextureFollowsTheSurfaceOnBothSidesOfASeam) {
   }
 }
 
+/// A wavy sheet whose left and right halves are two charts with a gutter of 0.1 between them; the border
+/// between the charts zigzags over the sheet.
+TriMesh two_charts() {
+  constexpr int kCells = 24;
+  test::PartBuilder part;
+  const auto is_left = [](int x, int y) { return x < kCells / 2 + (y % 4 < 2 ? 2 : -2); };
+  const auto corner = [&](int x, int y, bool left) {
+    const float s = static_cast<float>(x) / kCells, t = static_cast<float>(y) / kCells;
+    const float z = 0.05f * std::sin(9 * s) * std::sin(7 * t);
+    return part.vertex({s, t, z}, {left ? 0.75f * s : 0.35f + 0.75f * s, t});
+  };
+  for (int y = 0; y < kCells; ++y) {
+    for (int x = 0; x < kCells; ++x) {
+      const bool left = is_left(x, y);
+      part.quad(corner(x, y, left), corner(x + 1, y, left), corner(x + 1, y + 1, left),
+                corner(x, y + 1, left));
+    }
+  }
+  return test::weld_part(part.part());
+}
+
+TEST(Simplify, NothingFromBetweenTheChartsOfATextureComesIn) {
+  const TriMesh source = two_charts();
+  const auto range = [](const TriMesh& mesh) {
+    // Highest u of the left chart, lowest of the right: charts are told apart by where u is on x.
+    const AttributeLayer& uv = *mesh.find(Semantic::uv);
+    std::pair<double, double> edges{0, 1};
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      double x = 0, u = 0;
+      for (std::size_t c = 3 * f; c < 3 * f + 3; ++c) {
+        x += mesh.positions[mesh.vertex(CornerId{c}).index()].x / 3;
+        u += uv.value(uv.corner_value[c])[0] / 3;
+      }
+      const bool left = u < 0.75 * x + 0.175;
+      for (std::size_t c = 3 * f; c < 3 * f + 3; ++c) {
+        const double value = uv.value(uv.corner_value[c])[0];
+        if (left) {
+          edges.first = std::max(edges.first, value);
+        } else {
+          edges.second = std::min(edges.second, value);
+        }
+      }
+    }
+    return edges;
+  };
+  const auto [left, right] = range(source);
+  for (const double ratio : {0.3, 0.1, 0.05}) {
+    const auto [now_left, now_right] = range(surface(run_ratio(test::model_of(source), ratio)));
+    EXPECT_LE(now_left, left + 1e-6) << ratio;
+    EXPECT_GE(now_right, right - 1e-6) << ratio;
+  }
+}
+
 TEST(Simplify, NoTriangleTurnsOverInTheTexture) {
   for (const auto& [name, mesh] : test::all_families()) {
     if (mesh.face_count() < 16 || mesh.find(Semantic::uv) == nullptr) continue;

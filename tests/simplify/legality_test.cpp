@@ -1,0 +1,88 @@
+#include "fovea/simplify/legality.h"
+
+#include <gtest/gtest.h>
+
+#include "collapse_states.h"
+
+namespace fovea {
+namespace {
+
+TEST(Legality, AnEdgeOfATetrahedronIsItsLast) {
+  CollapseState state = test::state_of(test::tetrahedron());
+  Legality legality(state);
+  EXPECT_FALSE(legality.look_at(0, 1));
+  EXPECT_EQ(legality.topology(), Block::last);
+}
+
+TEST(Legality, EveryEdgeOfASphereMayCollapse) {
+  CollapseState state = test::state_of(test::icosphere(2));
+  Legality legality(state);
+  for (const CollapseEdge& edge : state.mesh.edges) {
+    EXPECT_TRUE(legality.look_at(edge.ends[0], edge.ends[1]));
+    EXPECT_EQ(legality.topology(), Block::none);
+  }
+}
+
+TEST(Legality, AnInnerEdgeMustNotJoinTwoBoundaries) {
+  // One column of quads: the rungs between are inner edges with both ends on the boundary.
+  CollapseState state = test::state_of(test::grid(1, 4));
+  Legality legality(state);
+  const std::uint32_t left = test::vertex_at(state, {0, 0.5f, 0}),
+                      right = test::vertex_at(state, {1, 0.5f, 0}),
+                      above = test::vertex_at(state, {0, 0.75f, 0});
+  EXPECT_FALSE(legality.look_at(left, right));
+  EXPECT_EQ(legality.topology(), Block::topology);
+  EXPECT_TRUE(legality.look_at(left, above));
+}
+
+TEST(Legality, ARingOfThreeEdgesDoesNotClose) {
+  // Three around: the ends of an edge on a ring share the third vertex of it, which is across no
+  // triangle of theirs.
+  CollapseState state = test::state_of(test::open_cylinder(3, 4));
+  Legality legality(state);
+  std::vector<std::uint32_t> middle;
+  for (std::uint32_t v = 0; v < state.mesh.vertices.size(); ++v) {
+    if (std::abs(state.mesh.vertices[v].position.z) < 1e-6) middle.push_back(v);
+  }
+  ASSERT_EQ(middle.size(), 3u);
+  EXPECT_FALSE(legality.look_at(middle[0], middle[1]));
+  EXPECT_EQ(legality.topology(), Block::topology);
+}
+
+TEST(Legality, ATriangleMustNotTurnOver) {
+  CollapseState state = test::state_of(test::grid(4, 4));
+  const Legality legality(state);
+  const std::uint32_t a = test::vertex_at(state, {0.5f, 0.5f, 0}),
+                      b = test::vertex_at(state, {0.75f, 0.5f, 0});
+  EXPECT_TRUE(legality.shape(a, b, state.slots[0].to_engine({0.6f, 0.5f, 0})));
+  EXPECT_FALSE(legality.shape(a, b, state.slots[0].to_engine({0.1f, 0.5f, 0})));  // beyond the neighbours
+  EXPECT_FALSE(legality.shape(a, b, state.slots[0].to_engine({0.6f, 0.5f, 3})));  // steep walls
+}
+
+TEST(Legality, ATriangleMustNotTurnOverInTheTexture) {
+  // A flat hexagon around the edge a–b; in the texture b lies far below the others.
+  test::PartBuilder part;
+  const std::uint32_t a = part.vertex({0, 0, 0}, {0, 0}), b = part.vertex({1, 0, 0}, {1, -5});
+  const std::uint32_t left = part.vertex({-1, 0, 0}, {-0.1f, 0}), right = part.vertex({2, 0, 0}, {2, 0});
+  const std::uint32_t top = part.vertex({0.5f, 1, 0}, {-2, 1}),
+                      bottom = part.vertex({0.5f, -1, 0}, {0.5f, -9});
+  part.triangle(a, b, top);
+  part.triangle(b, a, bottom);
+  part.triangle(left, a, top);
+  part.triangle(a, left, bottom);
+  part.triangle(b, right, top);
+  part.triangle(right, b, bottom);
+  SimplifyOptions options;
+  options.uv_weight = 0;  // values are mixed along the edge
+  CollapseState state = test::state_of(test::weld_part(part.part()), options);
+  const Legality legality(state);
+  const std::uint32_t at_a = test::vertex_at(state, {0, 0, 0}), at_b = test::vertex_at(state, {1, 0, 0});
+  ValueMerge merge(state, Placement::optimal);
+  merge.plan(at_a, at_b, state.mesh.vertices[at_a].position);
+  EXPECT_TRUE(legality.texture(at_a, at_b, merge));
+  merge.plan(at_a, at_b, state.mesh.vertices[at_b].position);
+  EXPECT_FALSE(legality.texture(at_a, at_b, merge));
+}
+
+}  // namespace
+}  // namespace fovea
