@@ -10,8 +10,8 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/prefetch.h"
 #include "fovea/simplify/collapse_queue.h"
+#include "fovea/simplify/edge_cost.h"
 #include "fovea/simplify/legality.h"
-#include "fovea/simplify/value_classes.h"
 #include "fovea/simplify/value_merge.h"
 
 namespace fovea {
@@ -28,15 +28,6 @@ constexpr std::uint8_t kMaxRetries = 12;
 constexpr double kTolerance = 1.1;
 /// Items that are taken from the queue together, so that their memory is fetched together.
 constexpr std::size_t kBatch = 16;
-/// Optimal positions further from the edge than this many edge lengths are not believed.
-constexpr double kReach = 2;
-
-/// A place for the merged vertex of an edge, and what it costs.
-struct Candidate {
-  double cost = std::numeric_limits<double>::infinity();
-  Vec3d position;
-};
-
 /// An edge or component that was taken out of the queue.
 struct Due {
   std::uint32_t item = kInvalid;
@@ -59,6 +50,7 @@ class Engine {
         edge_count_(static_cast<std::uint32_t>(mesh_.edges.size())),
         queue_(edge_count_ + state.components.count()),
         tries_(edge_count_, 0),
+        cost_(state, options.placement),
         legality_(state),
         merge_(state, options.placement) {}
 
@@ -86,18 +78,13 @@ class Engine {
   void put_off(const Due& due);
   void count_blocked();
 
-  Quadric edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scratch) const;
-  void subtract_channel(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
-                        ValueClasses& scratch) const;
-  std::size_t fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const;
-  Candidate best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const;
-
   void commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error);
   void merge_edges(std::uint32_t a, std::uint32_t b);
   void drop_shared_faces(std::uint32_t a, std::uint32_t b);
   void drop_coincident_faces(std::uint32_t b);
   void leave_edge(std::uint32_t e);
   void drop_face(std::uint32_t f);
+  void retire_values(std::uint32_t a, std::uint32_t b);
   void revive_edges(std::uint32_t b);
   void finish_step(CollapseStep step, double error);
 
@@ -110,110 +97,30 @@ class Engine {
   const std::uint32_t edge_count_;
   CollapseQueue queue_;              // edges, then components
   std::vector<std::uint8_t> tries_;  // [#E], refusals since the last change around
+  EdgeCost cost_;
   Legality legality_;
   ValueMerge merge_;
-  ValueClasses classes_;
   std::vector<Due> batch_;
   std::vector<std::uint32_t> changed_;  // vertices merged since the batch was priced
   CollapseOutcome outcome_;
   double error_so_far_ = 0;
   bool over_error_ = false;
 
+  /// A corner of a face that was dropped, at a vertex of several values.
+  struct DroppedCorner {
+    std::uint32_t corner, vertex;
+  };
+  std::vector<DroppedCorner> dropped_;
   // Scratch of commit() and try_vanish().
   std::vector<std::uint32_t> ring_;
 };
 
-// --- Costs -----------------------------------------------------------------------------------------
-
-void Engine::subtract_channel(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
-                              ValueClasses& scratch) const {
-  const int width = channel.fit_width;
-  const std::size_t stride = attribute_stride(width);
-  double sum[attribute_stride(4)];
-  std::vector<double> long_sum;
-  double* total = sum;
-  if (width > 4) {
-    long_sum.resize(stride);
-    total = long_sum.data();
-  }
-  const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
-  if (single_a < Channel::kMany && single_b < Channel::kMany) {
-    const double *qa = channel.value_quadric(single_a), *qb = channel.value_quadric(single_b);
-    for (std::size_t i = 0; i < stride; ++i) total[i] = qa[i] + qb[i];
-    reduce(q, total, width);
-    return;
-  }
-  scratch.find(state_, channel, a, b);
-  for (std::uint32_t root = 0; root < scratch.size(); ++root) {
-    if (scratch[root].root != root) continue;
-    const double* of_class = nullptr;
-    scratch.for_class(root, [&](const ValueClasses::Entry& entry) {
-      const double* qi = channel.value_quadric(entry.value);
-      if (of_class == nullptr) {
-        of_class = qi;
-      } else {
-        for (std::size_t k = 0; k < stride; ++k) total[k] = of_class[k] + qi[k];
-        of_class = total;
-      }
-    });
-    const std::uint32_t held = scratch.held_value(channel, a, b, root);
-    if (held == kInvalid) {
-      reduce(q, of_class, width);
-    } else {
-      const double scale = channel.scale[state_.slot_of_vertex(a)];
-      const float* value = channel.value(held);
-      const double scaled[2] = {scale * value[0], scale * value[1]};
-      hold(q, of_class, width, scaled);
-    }
-  }
-}
-
-/// Error of the merged vertex as a function of its position, attributes at their best.
-Quadric Engine::edge_quadric(std::uint32_t a, std::uint32_t b, ValueClasses& scratch) const {
-  Quadric q = mesh_.quadrics[a] + mesh_.quadrics[b];
-  for (const Channel& channel : state_.channels) {
-    if (channel.kind == ChannelKind::fitted) subtract_channel(q, channel, a, b, scratch);
-  }
-  return q;
-}
-
-/// The ends of the edge, as far as they may move, and its middle: cheapest first. At most three.
-std::size_t Engine::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const {
-  const Vec3d pa = mesh_.vertices[a].position, pb = mesh_.vertices[b].position;
-  std::size_t count = 0;
-  const auto add = [&](Vec3d p) {
-    Candidate c{std::max(q.value(p), 0.0), p};
-    std::size_t at = count++;
-    for (; at > 0 && out[at - 1].cost > c.cost; --at) out[at] = out[at - 1];
-    out[at] = c;
-  };
-  if (!mesh_.vertices[a].locked) add(pb);
-  if (!mesh_.vertices[b].locked) add(pa);
-  if (count == 2 && options_.placement == Placement::optimal) add((pa + pb) * 0.5);
-  return count;
-}
-
-Candidate Engine::best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const {
-  if (options_.placement == Placement::optimal && !mesh_.vertices[a].locked && !mesh_.vertices[b].locked) {
-    const Vec3d pa = mesh_.vertices[a].position, pb = mesh_.vertices[b].position;
-    Candidate best;
-    if (q.minimum(best.position) &&
-        length_squared(best.position - (pa + pb) * 0.5) <= kReach * kReach * length_squared(pb - pa)) {
-      best.cost = std::max(q.value_at_minimum(best.position), 0.0);
-      return best;
-    }
-  }
-  std::array<Candidate, 3> all;
-  return fallbacks(a, b, q, all.data()) > 0 ? all[0] : Candidate{};
-}
-
 void Engine::fill_queue() {
   std::vector<float> cost(edge_count_);
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
-    ValueClasses scratch;
     for (std::size_t e = begin; e < end; ++e) {
       const auto [a, b] = mesh_.edges[e].ends;
-      cost[e] = static_cast<float>(best_place(a, b, edge_quadric(a, b, scratch)).cost);
+      cost[e] = static_cast<float>(cost_.best_place(a, b, cost_.quadric(a, b)).cost);
     }
   });
   for (std::uint32_t e = 0; e < edge_count_; ++e) {
@@ -286,8 +193,8 @@ void Engine::take_batch() {
 
 void Engine::price(Due& due) {
   const auto [a, b] = mesh_.edges[due.item].ends;
-  due.quadric = edge_quadric(a, b, classes_);
-  due.place = best_place(a, b, due.quadric);
+  due.quadric = cost_.quadric(a, b);
+  due.place = cost_.best_place(a, b, due.quadric);
 }
 
 /// Puts back the edges of the batch that cost more by now than they were queued for.
@@ -339,7 +246,7 @@ void Engine::try_edge(Due& due) {
     return;
   }
   std::array<Candidate, 3> places;
-  const std::size_t count = fallbacks(a, b, due.quadric, places.data());
+  const std::size_t count = cost_.fallbacks(a, b, due.quadric, places.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_legal(a, b, places[i].position)) continue;
     take_or_requeue(due, places[i]);
@@ -415,6 +322,7 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   const bool moved = !(where.position == mesh_.vertices[b].position);
 
   merge_.apply(a, b, m, outcome_.record);
+  dropped_.clear();
   drop_shared_faces(a, b);
   merge_edges(a, b);
   drop_coincident_faces(b);
@@ -423,6 +331,8 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   mesh_.vertices[b].position = where.position;
   mesh_.quadrics[b] += mesh_.quadrics[a];
   if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
+  cost_.refresh(b);
+  retire_values(a, b);
   revive_edges(b);
   changed_.push_back(b);
 
@@ -442,6 +352,7 @@ void Engine::leave_edge(std::uint32_t e) {
 
 void Engine::drop_face(std::uint32_t f) {
   for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
+    if (cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
     leave_edge(mesh_.edge(c));
     mesh_.unlink_corner(c);
   }
@@ -516,6 +427,28 @@ void Engine::drop_coincident_faces(std::uint32_t b) {
   }
 }
 
+/// Values that lost their last triangle (a chart that ends) stay in the error as they were: what they make
+/// up for goes into the quadric of their vertex for good.
+void Engine::retire_values(std::uint32_t a, std::uint32_t b) {
+  for (auto& [c, v] : dropped_) {
+    if (v == a) v = b;
+    for (Channel& channel : state_.channels) {
+      const std::uint32_t value = channel.corner_value[c];
+      if (channel.kind != ChannelKind::fitted || value == kInvalid) continue;
+      const auto ring = mesh_.ring(v);
+      if (std::any_of(ring.begin(), ring.end(),
+                      [&](std::uint32_t d) { return channel.corner_value[d] == value; }))
+        continue;
+      mesh_.quadrics[v] += cost_.separate(channel, v, value);
+      std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0);
+    }
+  }
+  for (const auto& [c, v] : dropped_) {
+    merge_.update_singles(v);
+    cost_.refresh(v);
+  }
+}
+
 /// Gives edges at b that were refused another chance, at their present cost. The others keep the cost
 /// that they have in the queue: a merged vertex only adds to it, so it is a lower bound, and `try_edge`
 /// looks again when it comes up.
@@ -523,7 +456,7 @@ void Engine::revive_edges(std::uint32_t b) {
   const auto revive = [&](std::uint32_t e, std::uint32_t w) {
     if (tries_[e] == 0) return;
     tries_[e] = 0;
-    const double cost = best_place(b, w, edge_quadric(b, w, classes_)).cost;
+    const double cost = cost_.best_place(b, w, cost_.quadric(b, w)).cost;
     if (std::isfinite(cost)) queue_.set(e, cost);
   };
   mesh_.for_ring(b, [&](std::uint32_t c) {

@@ -86,18 +86,10 @@ void ValueClasses::find(const CollapseState& state, const Channel& channel, std:
 
 std::uint32_t ValueClasses::held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,
                                        std::uint32_t root) const {
-  const bool seam_a = channel.single[a] == Channel::kMany, seam_b = channel.single[b] == Channel::kMany;
-  if (!channel.is_uv() || (!seam_a && !seam_b)) return kInvalid;
-  std::size_t at_a = 0, at_b = 0;
-  std::uint32_t value_a = kInvalid, value_b = kInvalid;
-  for_class(root, [&](const Entry& entry) {
-    ++(entry.at_b ? at_b : at_a);
-    (entry.at_b ? value_b : value_a) = entry.value;
-  });
-  if (at_a == 0 || at_b == 0) return at_a == 0 ? value_b : value_a;
-  if (at_a != at_b) return at_a > at_b ? value_b : value_a;
-  if (seam_a != seam_b) return seam_a ? value_a : value_b;
-  return kInvalid;
+  if (!channel.is_uv()) return kInvalid;
+  ClassEnds ends;
+  for_class(root, [&](const Entry& entry) { ends.add(entry.value, entry.at_b); });
+  return ends.held_value(channel.single[a] == Channel::kMany, channel.single[b] == Channel::kMany);
 }
 
 }  // namespace fovea

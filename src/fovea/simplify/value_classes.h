@@ -8,6 +8,28 @@
 
 namespace fovea {
 
+/// How many values of a class are at a and at b, and one of each.
+struct ClassEnds {
+  std::size_t count_a = 0, count_b = 0;
+  std::uint32_t value_a = kInvalid, value_b = kInvalid;
+
+  void add(std::uint32_t value, bool at_b) {
+    ++(at_b ? count_b : count_a);
+    (at_b ? value_b : value_a) = value;
+  }
+  /// For texture coordinates, the value that the class must keep so that no texels from beyond its chart
+  /// come in: a value that does not join stays; an inner vertex that joins a seam takes the seam's
+  /// value; where a seam's sides join they take the value at its end. kInvalid if the class may move:
+  /// inside a chart, or along a seam. `many_a` and `many_b`: whether a and b are on a seam.
+  std::uint32_t held_value(bool many_a, bool many_b) const {
+    if (!many_a && !many_b) return kInvalid;
+    if (count_a == 0 || count_b == 0) return count_a == 0 ? value_b : value_a;
+    if (count_a != count_b) return count_a > count_b ? value_b : value_a;
+    if (many_a != many_b) return many_a ? value_a : value_b;
+    return kInvalid;
+  }
+};
+
 /// Which values of one channel become one when the edge a–b collapses.
 ///
 /// Every triangle on the edge vanishes, and with it the difference between its value at a and its
@@ -32,10 +54,7 @@ class ValueClasses {
   void for_class(std::uint32_t root, F&& f) const {
     for (std::uint32_t i = root; i != kInvalid; i = entries_[i].next) f(entries_[i]);
   }
-  /// For texture coordinates, the value that class `root` must keep so that no texels from beyond its
-  /// chart come in: a value that does not join stays; an inner vertex that joins a seam takes the
-  /// seam's value; where a seam's sides join they take the value at its end. kInvalid if the class may
-  /// move: inside a chart, or along a seam.
+  /// What class `root` of texture coordinates must keep, see ClassEnds; kInvalid for other attributes.
   std::uint32_t held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,
                            std::uint32_t root) const;
   /// Index of the entry of a value that belongs to a or b.
