@@ -28,6 +28,7 @@ constexpr std::uint8_t kMaxRetries = 12;
 constexpr double kTolerance = 1.1;
 /// Items that are taken from the queue together, so that their memory is fetched together.
 constexpr std::size_t kBatch = 16;
+
 /// An edge or component that was taken out of the queue.
 struct Due {
   std::uint32_t item = kInvalid;
@@ -450,7 +451,7 @@ void Engine::retire_values(std::uint32_t a, std::uint32_t b) {
 }
 
 /// Gives edges at b that were refused another chance, at their present cost. The others keep the cost
-/// that they have in the queue: a merged vertex only adds to it, so it is a lower bound, and `try_edge`
+/// that they have in the queue: a merged vertex adds to it, so it is a lower bound, and `try_edge`
 /// looks again when it comes up.
 void Engine::revive_edges(std::uint32_t b) {
   const auto revive = [&](std::uint32_t e, std::uint32_t w) {

@@ -29,9 +29,9 @@ struct CollapseOutcome {
 ///         none, or dearer than thought: put it back at that price
 ///         merge quadrics, fit attribute values, rewire, record
 ///
-/// A merge only adds to the cost of the edges around, so what they are queued for stays a lower bound
-/// and is corrected when they come up. A few at a time, because most of the time goes into waiting for
-/// memory, and that of several edges can be waited for together.
+/// A merge adds to the cost of the edges around (but for the rare seam that ends there), so what they are
+/// queued for stays a lower bound and is corrected when they come up. A few at a time, because most of the
+/// time goes into waiting for memory, and that of several edges can be waited for together.
 ///
 /// Where the surface's topology forbids a collapse it is put off by a constant factor rather than refused,
 /// unless `keep_topology`: a model of many handles and parts still reaches its target, late.

@@ -31,6 +31,15 @@ class AttributeSum {
   std::vector<double> far_;  // of wide channels
 };
 
+/// Adds the error of a sum of attribute quadrics whose texture coordinates stay those of `value`.
+void hold_at(Quadric& q, const Channel& channel, const double* attribute, std::uint32_t value,
+             std::uint32_t mesh) {
+  const double scale = channel.scale[mesh];
+  const float* numbers = channel.value(value);
+  const double scaled[2] = {scale * numbers[0], scale * numbers[1]};
+  hold(q, attribute, channel.fit_width, scaled);
+}
+
 }  // namespace
 
 EdgeCost::EdgeCost(const CollapseState& state, Placement placement)
@@ -67,10 +76,7 @@ Quadric EdgeCost::separate(const Channel& channel, std::uint32_t v, std::uint32_
   Quadric q;
   const double* const attribute = channel.value_quadric(value);
   if (channel.is_uv()) {
-    const double scale = channel.scale[state_.slot_of_vertex(v)];
-    const float* numbers = channel.value(value);
-    const double scaled[2] = {scale * numbers[0], scale * numbers[1]};
-    hold(q, attribute, channel.fit_width, scaled);
+    hold_at(q, channel, attribute, value, state_.slot_of_vertex(v));
   } else {
     reduce(q, attribute, channel.fit_width);
   }
@@ -135,10 +141,7 @@ void EdgeCost::settle_joined(Quadric& q, const Channel& channel, std::uint32_t a
     if (held == kInvalid) {
       reduce(q, sum.get(), channel.fit_width);
     } else {
-      const double scale = channel.scale[state_.slot_of_vertex(a)];
-      const float* numbers = channel.value(held);
-      const double scaled[2] = {scale * numbers[0], scale * numbers[1]};
-      hold(q, sum.get(), channel.fit_width, scaled);
+      hold_at(q, channel, sum.get(), held, state_.slot_of_vertex(a));
     }
   }
   // An end's only value that no triangle on the edge uses.
