@@ -49,6 +49,7 @@ void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t ro
   }
   for (std::size_t k = 0; k < width; ++k) out[k] = at_a[k] + (at_b[k] - at_a[k]) * along_;
   if (channel.semantic == Semantic::tangent) out[3] = (along_ < 0.5f ? at_a : at_b)[3];
+  // Along a seam (more than one value at an end) texture coordinates stay on it: mixed, not fitted.
   if (channel.kind == ChannelKind::fitted && !(channel.is_uv() && plan.classes.size() > 2))
     fit(channel, plan, root, out);
 }
