@@ -18,7 +18,7 @@ Quadric quadric_by_classes(const CollapseState& state, std::uint32_t a, std::uin
   ValueClasses classes;
   for (const Channel& channel : state.channels) {
     if (channel.kind != ChannelKind::fitted) continue;
-    classes.find(state, channel, a, b);
+    classes.find(state.mesh, channel, a, b, state.mesh.edge_corners(a, b));
     for (std::uint32_t root = 0; root < classes.size(); ++root) {
       if (classes[root].root != root) continue;
       std::vector<double> sum(attribute_stride(channel.fit_width), 0.0);

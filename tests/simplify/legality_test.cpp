@@ -51,12 +51,13 @@ TEST(Legality, ARingOfThreeEdgesDoesNotClose) {
 
 TEST(Legality, ATriangleMustNotTurnOver) {
   CollapseState state = test::state_of(test::grid(4, 4));
-  const Legality legality(state);
+  Legality legality(state);
   const std::uint32_t a = test::vertex_at(state, {0.5f, 0.5f, 0}),
                       b = test::vertex_at(state, {0.75f, 0.5f, 0});
-  EXPECT_TRUE(legality.shape(a, b, state.slots[0].to_engine({0.6f, 0.5f, 0})));
-  EXPECT_FALSE(legality.shape(a, b, state.slots[0].to_engine({0.1f, 0.5f, 0})));  // beyond the neighbours
-  EXPECT_FALSE(legality.shape(a, b, state.slots[0].to_engine({0.6f, 0.5f, 3})));  // steep walls
+  legality.look_at(a, b);
+  EXPECT_TRUE(legality.shape(state.slots[0].to_engine({0.6f, 0.5f, 0})));
+  EXPECT_FALSE(legality.shape(state.slots[0].to_engine({0.1f, 0.5f, 0})));  // beyond the neighbours
+  EXPECT_FALSE(legality.shape(state.slots[0].to_engine({0.6f, 0.5f, 3})));  // steep walls
 }
 
 TEST(Legality, ATriangleMustNotTurnOverInTheTexture) {
@@ -75,13 +76,14 @@ TEST(Legality, ATriangleMustNotTurnOverInTheTexture) {
   SimplifyOptions options;
   options.uv_weight = 0;  // values are mixed along the edge
   CollapseState state = test::state_of(test::weld_part(part.part()), options);
-  const Legality legality(state);
+  Legality legality(state);
   const std::uint32_t at_a = test::vertex_at(state, {0, 0, 0}), at_b = test::vertex_at(state, {1, 0, 0});
   ValueMerge merge(state, Placement::optimal);
+  legality.look_at(at_a, at_b);
   merge.plan(at_a, at_b, state.mesh.vertices[at_a].position);
-  EXPECT_TRUE(legality.texture(at_a, at_b, merge));
+  EXPECT_TRUE(legality.texture(merge));
   merge.plan(at_a, at_b, state.mesh.vertices[at_b].position);
-  EXPECT_FALSE(legality.texture(at_a, at_b, merge));
+  EXPECT_FALSE(legality.texture(merge));
 }
 
 }  // namespace

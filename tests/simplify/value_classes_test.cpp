@@ -23,6 +23,12 @@ std::size_t class_count(const ValueClasses& classes) {
   return roots.size();
 }
 
+/// The classes of the channel for the edge a–b.
+void find(ValueClasses& classes, const CollapseState& state, const Channel& channel, std::uint32_t a,
+          std::uint32_t b) {
+  classes.find(state.mesh, channel, a, b, state.mesh.edge_corners(a, b));
+}
+
 /// Every entry is reached from its root, once.
 void expect_lists_whole(const ValueClasses& classes) {
   std::size_t reached = 0;
@@ -39,8 +45,8 @@ void expect_lists_whole(const ValueClasses& classes) {
 TEST(ValueClasses, APlainEdgeLeavesOneValue) {
   const CollapseState state = test::state_of(test::grid(4, 4));
   ValueClasses classes;
-  classes.find(state, uv_channel(state), test::vertex_at(state, {0.5f, 0.5f, 0}),
-               test::vertex_at(state, {0.75f, 0.5f, 0}));
+  find(classes, state, uv_channel(state), test::vertex_at(state, {0.5f, 0.5f, 0}),
+       test::vertex_at(state, {0.75f, 0.5f, 0}));
   EXPECT_EQ(classes.size(), 2u);
   EXPECT_EQ(class_count(classes), 1u);
   expect_lists_whole(classes);
@@ -66,7 +72,7 @@ struct Cylinder {
 
 TEST(ValueClasses, ASeamEdgeLeavesOneValuePerSide) {
   Cylinder c;
-  c.classes.find(c.state, c.channel, c.seam, c.neighbour(true));
+  find(c.classes, c.state, c.channel, c.seam, c.neighbour(true));
   EXPECT_EQ(c.classes.size(), 4u);
   EXPECT_EQ(class_count(c.classes), 2u);
   expect_lists_whole(c.classes);
@@ -81,7 +87,7 @@ TEST(ValueClasses, ASeamEdgeLeavesOneValuePerSide) {
 TEST(ValueClasses, AnInnerVertexTakesTheValueOfTheSeam) {
   Cylinder c;
   const std::uint32_t inner = c.neighbour(false);
-  c.classes.find(c.state, c.channel, c.seam, inner);
+  find(c.classes, c.state, c.channel, c.seam, inner);
   EXPECT_EQ(c.classes.size(), 3u);
   EXPECT_EQ(class_count(c.classes), 2u);
   for (std::uint32_t i = 0; i < c.classes.size(); ++i) {
@@ -109,7 +115,7 @@ TEST(ValueClasses, WhereASeamEndsItsSidesJoinAtItsEnd) {
   const std::uint32_t centre = test::vertex_at(state, {0, 0, 0}), end = test::vertex_at(state, {1, 0, 0});
   ASSERT_EQ(channel.single[end], Channel::kMany);
   ValueClasses classes;
-  classes.find(state, channel, end, centre);
+  find(classes, state, channel, end, centre);
   EXPECT_EQ(classes.size(), 3u);
   EXPECT_EQ(class_count(classes), 1u);
   EXPECT_EQ(classes.held_value(channel, end, centre, 0), channel.single[centre]);
@@ -131,7 +137,7 @@ TEST(ValueClasses, FindsEachOfThousandsOfValuesAtAPole) {
   const Channel& channel = uv_channel(state);
   const std::uint32_t pole = test::vertex_at(state, {0, 0, 1}), other = test::vertex_at(state, rim(1));
   ValueClasses classes;
-  classes.find(state, channel, pole, other);
+  find(classes, state, channel, pole, other);
   EXPECT_EQ(classes.size(), static_cast<std::size_t>(kAround) + 1);  // the pole's, and one at the rim
   EXPECT_EQ(class_count(classes), static_cast<std::size_t>(kAround) - 1);
   for (std::uint32_t i = 0; i < classes.size(); ++i) EXPECT_EQ(classes.index_of(classes[i].value), i);

@@ -57,7 +57,7 @@ class Engine {
 
   CollapseOutcome run() {
     fill_queue();
-    outcome_.record.triangles_after.push_back(mesh_.live_faces);
+    reserve_record();
     outcome_.stop = loop();
     outcome_.error = error_so_far_;
     if (outcome_.stop == StopReason::stuck) count_blocked();
@@ -66,6 +66,7 @@ class Engine {
 
  private:
   void fill_queue();
+  void reserve_record();
   StopReason loop();
   void take_batch();
   void drop_dearer();
@@ -86,6 +87,7 @@ class Engine {
   void leave_edge(std::uint32_t e);
   void drop_face(std::uint32_t f);
   void retire_values(std::uint32_t a, std::uint32_t b);
+  void look_at_values(std::uint32_t v);
   void revive_edges(std::uint32_t b);
   void finish_step(CollapseStep step, double error);
 
@@ -130,6 +132,15 @@ void Engine::fill_queue() {
   if (options_.keep_topology || state_.components.count() < 2) return;
   for (std::uint32_t i = 0; i < state_.components.count(); ++i)
     queue_.set(edge_count_ + i, state_.vanish[i].cost);
+}
+
+/// Room for the steps to the target, if there is one: most take two triangles.
+void Engine::reserve_record() {
+  const std::uint64_t faces = mesh_.live_faces > target_ ? mesh_.live_faces - target_ : 0;
+  outcome_.record.triangles_before = mesh_.live_faces;
+  if (target_ == 0) return;
+  outcome_.record.removed_faces.reserve(faces + 1);
+  outcome_.record.steps.reserve(faces / 2 + faces / 32);
 }
 
 // --- The loop --------------------------------------------------------------------------------------
@@ -220,13 +231,22 @@ void Engine::fetch_surroundings() const {
       if (due.item >= edge_count_) continue;
       for (const std::uint32_t v : mesh_.edges[due.item].ends) {
         for (const std::uint32_t c : mesh_.ring(v).first(std::min<std::size_t>(mesh_.ring(v).size(), 12)))
-          f(mesh_.faces[c / 3]);
+          f(c / 3);
       }
     }
   };
-  for_faces([](const CollapseFace& face) { prefetch(&face); });
-  for_faces([&](const CollapseFace& face) {
-    for (const std::uint32_t v : face.vertex) prefetch(&mesh_.vertices[v]);
+  for_faces([&](std::size_t f) {
+    prefetch(&mesh_.faces[f]);
+    for (const Channel& channel : state_.channels) prefetch(&channel.corner_value[3 * f]);
+  });
+  for_faces([&](std::size_t f) {
+    for (const std::uint32_t v : mesh_.faces[f].vertex) prefetch(&mesh_.vertices[v]);
+    for (const Channel& channel : state_.channels) {
+      if (!channel.is_uv()) continue;
+      for (std::size_t c = 3 * f; c < 3 * f + 3; ++c) {
+        if (channel.corner_value[c] != kInvalid) prefetch(channel.value(channel.corner_value[c]));
+      }
+    }
   });
 }
 
@@ -257,9 +277,9 @@ void Engine::try_edge(Due& due) {
 }
 
 bool Engine::is_legal(std::uint32_t a, std::uint32_t b, Vec3d p) {
-  if (!legality_.shape(a, b, p)) return false;
+  if (!legality_.shape(p)) return false;
   merge_.plan(a, b, p);
-  return legality_.texture(a, b, merge_);
+  return legality_.texture(merge_);
 }
 
 /// Whether the edge costs more than it was queued for; then it goes back into the queue at its price,
@@ -283,6 +303,7 @@ void Engine::take_or_requeue(const Due& due, const Candidate& where) {
 }
 
 void Engine::put_off(const Due& due) {
+  for (const std::uint32_t v : mesh_.edges[due.item].ends) mesh_.vertices[v].refused = 1;
   if (++tries_[due.item] <= kMaxRetries) queue_.set(due.item, std::max(due.cost, 1e-20) * kRetryFactor);
 }
 
@@ -327,13 +348,13 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   drop_shared_faces(a, b);
   merge_edges(a, b);
   drop_coincident_faces(b);
-  merge_.update_singles(b);
 
   mesh_.vertices[b].position = where.position;
   mesh_.quadrics[b] += mesh_.quadrics[a];
   if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
-  cost_.refresh(b);
+  if (mesh_.vertices[a].refused) mesh_.vertices[b].refused = 1;
   retire_values(a, b);
+  look_at_values(b);
   revive_edges(b);
   changed_.push_back(b);
 
@@ -364,8 +385,8 @@ void Engine::drop_face(std::uint32_t f) {
 void Engine::drop_shared_faces(std::uint32_t a, std::uint32_t b) {
   ring_.clear();
   mesh_.for_ring(a, [&](std::uint32_t c) {
-    if (mesh_.vertex(CollapseMesh::next(c)) == b || mesh_.vertex(CollapseMesh::previous(c)) == b)
-      ring_.push_back(c / 3);
+    const CornerView at_c = mesh_.view(c);
+    if (at_c.next == b || at_c.previous == b) ring_.push_back(c / 3);
   });
   for (const std::uint32_t f : ring_) drop_face(f);
 }
@@ -379,8 +400,9 @@ void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
     mesh_.vertices[w].mark_count = e;
   };
   mesh_.for_ring(b, [&](std::uint32_t c) {
-    note(mesh_.vertex(CollapseMesh::next(c)), mesh_.edge(c));
-    note(mesh_.vertex(CollapseMesh::previous(c)), mesh_.edge(CollapseMesh::previous(c)));
+    const CornerView at_c = mesh_.view(c);
+    note(at_c.next, at_c.to_next);
+    note(at_c.previous, at_c.to_previous);
   });
   const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
     const std::uint32_t e = mesh_.edge(half_edge);
@@ -393,13 +415,12 @@ void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
       leave_edge(e);
     }
   };
-  ring_.clear();
-  mesh_.for_ring(a, [&](std::uint32_t c) { ring_.push_back(c); });
-  for (const std::uint32_t c : ring_) {
-    take_over(c, mesh_.vertex(CollapseMesh::next(c)));
-    take_over(CollapseMesh::previous(c), mesh_.vertex(CollapseMesh::previous(c)));
-  }
-  for (const std::uint32_t c : ring_) mesh_.faces[c / 3].vertex[c % 3] = b;
+  mesh_.for_ring(a, [&](std::uint32_t c) {
+    const CornerView at_c = mesh_.view(c);
+    take_over(c, at_c.next);
+    take_over(CollapseMesh::previous(c), at_c.previous);
+    mesh_.faces[c / 3].vertex[c % 3] = b;
+  });
   mesh_.join_rings(a, b);
 }
 
@@ -411,14 +432,12 @@ void Engine::drop_coincident_faces(std::uint32_t b) {
   mesh_.for_ring(b, [&](std::uint32_t c) { ring_.push_back(c); });
   for (std::size_t i = 0; i < ring_.size(); ++i) {
     if (!mesh_.face_alive(ring_[i] / 3)) continue;
-    const std::uint32_t n = mesh_.vertex(CollapseMesh::next(ring_[i])),
-                        p = mesh_.vertex(CollapseMesh::previous(ring_[i]));
+    const CornerView one = mesh_.view(ring_[i]);
     for (std::size_t j = i + 1; j < ring_.size(); ++j) {
       if (!mesh_.face_alive(ring_[j] / 3)) continue;
-      const std::uint32_t n2 = mesh_.vertex(CollapseMesh::next(ring_[j])),
-                          p2 = mesh_.vertex(CollapseMesh::previous(ring_[j]));
-      const bool back_to_back = n == p2 && p == n2;
-      if (!back_to_back && !(n == n2 && p == p2)) continue;
+      const CornerView other = mesh_.view(ring_[j]);
+      const bool back_to_back = one.next == other.previous && one.previous == other.next;
+      if (!back_to_back && !(one.next == other.next && one.previous == other.previous)) continue;
       drop_face(ring_[j] / 3);
       if (back_to_back) {
         drop_face(ring_[i] / 3);
@@ -431,29 +450,36 @@ void Engine::drop_coincident_faces(std::uint32_t b) {
 /// Values that lost their last triangle (a chart that ends) stay in the error as they were: what they make
 /// up for goes into the quadric of their vertex for good.
 void Engine::retire_values(std::uint32_t a, std::uint32_t b) {
-  for (auto& [c, v] : dropped_) {
-    if (v == a) v = b;
+  for (const auto& [c, vertex] : dropped_) {
+    const std::uint32_t v = vertex == a ? b : vertex;
+    const auto ring = mesh_.ring(v);
+    bool retired = false;
     for (Channel& channel : state_.channels) {
       const std::uint32_t value = channel.corner_value[c];
       if (channel.kind != ChannelKind::fitted || value == kInvalid) continue;
-      const auto ring = mesh_.ring(v);
       if (std::any_of(ring.begin(), ring.end(),
                       [&](std::uint32_t d) { return channel.corner_value[d] == value; }))
         continue;
       mesh_.quadrics[v] += cost_.separate(channel, v, value);
       std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0);
+      retired = true;
     }
+    if (retired && v != b) look_at_values(v);
   }
-  for (const auto& [c, v] : dropped_) {
-    merge_.update_singles(v);
-    cost_.refresh(v);
-  }
+}
+
+/// To be called when the values or triangles at v have changed.
+void Engine::look_at_values(std::uint32_t v) {
+  merge_.update_singles(v);
+  cost_.refresh(v);
 }
 
 /// Gives edges at b that were refused another chance, at their present cost. The others keep the cost
 /// that they have in the queue: a merged vertex adds to it, so it is a lower bound, and `try_edge`
 /// looks again when it comes up.
 void Engine::revive_edges(std::uint32_t b) {
+  if (!mesh_.vertices[b].refused) return;
+  mesh_.vertices[b].refused = 0;
   const auto revive = [&](std::uint32_t e, std::uint32_t w) {
     if (tries_[e] == 0) return;
     tries_[e] = 0;
@@ -461,8 +487,9 @@ void Engine::revive_edges(std::uint32_t b) {
     if (std::isfinite(cost)) queue_.set(e, cost);
   };
   mesh_.for_ring(b, [&](std::uint32_t c) {
-    revive(mesh_.edge(c), mesh_.vertex(CollapseMesh::next(c)));
-    revive(mesh_.edge(CollapseMesh::previous(c)), mesh_.vertex(CollapseMesh::previous(c)));
+    const CornerView at_c = mesh_.view(c);
+    revive(at_c.to_next, at_c.next);
+    revive(at_c.to_previous, at_c.previous);
   });
 }
 
@@ -473,9 +500,7 @@ void Engine::finish_step(CollapseStep step, double error) {
   step.faces_end = static_cast<std::uint32_t>(record.removed_faces.size());
   step.joins_end = static_cast<std::uint32_t>(record.joins.size());
   step.writes_end = static_cast<std::uint32_t>(record.writes.size());
-  step.floats_end = record.floats.size();
   record.steps.push_back(step);
-  record.triangles_after.push_back(mesh_.live_faces);
 }
 
 void Engine::count_blocked() {

@@ -51,12 +51,34 @@ void CollapseMesh::link_rings() {
     end += std::bit_ceil(std::uint32_t{v.ring_size});
     v.ring_size = 0;
   }
+  corners.reserve(end + end / 4);  // rings that grow move to the end
   corners.assign(end, kInvalid);
   for (std::uint32_t c = 0; c < 3 * faces.size(); ++c) {
     CollapseVertex& v = vertices[vertex(c)];
     corners[v.ring_begin + v.ring_size++] = c;
   }
   free_room_.assign(32, kInvalid);
+}
+
+EdgeCorners CollapseMesh::edge_corners(std::uint32_t a, std::uint32_t b) const {
+  EdgeCorners found;
+  const bool from_a = vertices[a].ring_size <= vertices[b].ring_size;
+  const std::uint32_t other = from_a ? b : a;
+  for (const std::uint32_t c : ring(from_a ? a : b)) {
+    const CollapseFace& face = faces[c / 3];
+    std::uint32_t d = 3 * (c / 3);
+    if (face.vertex[1] == other) {
+      d += 1;
+    } else if (face.vertex[2] == other) {
+      d += 2;
+    } else if (face.vertex[0] != other) {
+      continue;
+    }
+    if (found.count == EdgeCorners::kMost) break;
+    found.pairs[found.count][0] = from_a ? c : d;
+    found.pairs[found.count++][1] = from_a ? d : c;
+  }
+  return found;
 }
 
 void CollapseMesh::unlink_corner(std::uint32_t c) {
@@ -78,7 +100,7 @@ void CollapseMesh::join_rings(std::uint32_t a, std::uint32_t b) {
   }
   std::copy_n(corners.begin() + from.ring_begin, from.ring_size,
               corners.begin() + to.ring_begin + to.ring_size);
-  to.ring_size = size & 0x7FFFFFFFu;
+  to.ring_size = size & 0x3FFFFFFFu;
   give_room(from.ring_begin, from.ring_size);
   from.ring_size = 0;
 }

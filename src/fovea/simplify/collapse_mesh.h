@@ -21,8 +21,9 @@ struct CollapseFace {
 struct CollapseVertex {
   Vec3d position;                    ///< In units of the scene's diagonal, around the mesh's centre.
   std::uint32_t ring_begin = 0;      ///< Where its ring begins in CollapseMesh::corners.
-  std::uint32_t ring_size : 31 = 0;  ///< Corners in its ring; 0 without triangles.
+  std::uint32_t ring_size : 30 = 0;  ///< Corners in its ring; 0 without triangles.
   std::uint32_t locked : 1 = 0;      ///< Must stay where it is.
+  std::uint32_t refused : 1 = 0;     ///< An edge at it was refused since something changed around it.
   std::uint32_t mark = 0;            ///< Scratch of whoever looks around; see CollapseMesh::new_mark.
   std::uint32_t mark_count = 0;      ///< Scratch that holds while `mark` does.
 };
@@ -31,6 +32,19 @@ struct CollapseVertex {
 struct CollapseEdge {
   std::array<std::uint32_t, 2> ends;
   std::uint32_t face_count = 0;
+};
+
+/// What the triangle at a corner has on its other two corners.
+struct CornerView {
+  std::uint32_t next, previous;        ///< Vertices.
+  std::uint32_t to_next, to_previous;  ///< Edges from the corner's vertex to these.
+};
+
+/// The triangles on an edge a–b, as pairs of their corners at a and at b; of more than a few, some.
+struct EdgeCorners {
+  static constexpr std::size_t kMost = 8;
+  std::array<std::array<std::uint32_t, 2>, kMost> pairs;
+  std::size_t count = 0;
 };
 
 /// Triangles that can lose edges: the connectivity of the collapse engine.
@@ -58,6 +72,11 @@ struct CollapseMesh {
   std::uint32_t vertex(std::uint32_t c) const { return faces[c / 3].vertex[c % 3]; }
   std::uint32_t edge(std::uint32_t c) const { return faces[c / 3].edge[c % 3]; }
   std::uint32_t& edge(std::uint32_t c) { return faces[c / 3].edge[c % 3]; }
+  CornerView view(std::uint32_t c) const {
+    const CollapseFace& face = faces[c / 3];
+    const std::uint32_t k = c % 3, n = k == 2 ? 0 : k + 1, p = k == 0 ? 2 : k - 1;
+    return {face.vertex[n], face.vertex[p], face.edge[k], face.edge[p]};
+  }
   bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
   bool edge_alive(std::uint32_t e) const { return edges[e].face_count > 0; }
 
@@ -70,6 +89,9 @@ struct CollapseMesh {
   void for_ring(std::uint32_t v, F&& f) const {
     for (const std::uint32_t c : ring(v)) f(c);
   }
+
+  /// The triangles on the edge a–b. O(valence).
+  EdgeCorners edge_corners(std::uint32_t a, std::uint32_t b) const;
 
   /// Takes corner c out of the ring of its vertex.
   void unlink_corner(std::uint32_t c);

@@ -1,6 +1,7 @@
 #include "fovea/simplify/collapse_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fovea/base/parallel.h"
@@ -30,10 +31,12 @@ constexpr double kSeamWeight = 0.3;
 /// Weight of a component that vanishes against a surface of its area that moves by its radius.
 constexpr double kVanishWeight = 1;
 
-/// The linear functions gradient[k]·p + origin[k] of a channel over a face.
-struct FaceAttributes {
-  std::vector<Vec3d> gradient;
-  std::vector<double> origin;
+/// A face while its quadrics are added.
+struct FaceFrame {
+  std::uint32_t face, mesh;
+  double weight;  ///< For each of its corners.
+  Vec3d origin;   ///< Its first corner.
+  TriangleGradient gradient;
 };
 
 class Builder {
@@ -75,8 +78,11 @@ class Builder {
   void find_single_values(Channel& channel) const;
   void scale_channel(Channel& channel) const;
   void add_face_quadrics();
-  void add_face(std::uint32_t f, std::size_t begin, std::size_t end, FaceAttributes& scratch);
-  double find_slopes(const Channel& channel, std::uint32_t f, FaceAttributes& out) const;
+  void add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
+                std::vector<double>& scratch);
+  template <int kWidth>
+  void add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
+                  std::vector<double>& scratch, Quadric& q);
   void add_edge_quadrics();
   bool is_seam(std::uint32_t corner_a, std::uint32_t corner_b) const;
   void price_components();
@@ -154,7 +160,8 @@ double Builder::option_weight(const Channel& channel) const {
 double Builder::steepness_limit(const Channel& channel, double scale) const {
   if (channel.is_position_morph) return 4;
   if (channel.is_uv()) return 2 * kSlide * kSlide * option_weight(channel);
-  return std::pow(2 * scale / kGradientLength, 2);
+  const double steepness = 2 * scale / kGradientLength;
+  return steepness * steepness;
 }
 
 Channel& Builder::channel_for(const AttributeLayer& layer) {
@@ -375,11 +382,14 @@ void Builder::add_face_quadrics() {
   const auto ranges = static_cast<std::size_t>(std::min(context_.thread_count(), kMostRanges));
   parallel_for(context_, mesh.vertices.size(), mesh.vertices.size() / ranges + 1,
                [&](std::size_t begin, std::size_t end) {
-                 FaceAttributes scratch;
-                 for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-                   const auto& t = mesh.faces[f].vertex;
-                   const auto inside = [&](std::uint32_t v) { return v >= begin && v < end; };
-                   if (inside(t[0]) || inside(t[1]) || inside(t[2])) add_face(f, begin, end, scratch);
+                 std::vector<double> scratch;
+                 std::uint32_t f = 0;
+                 for (std::uint32_t m = 0; m < meshes_.size(); ++m) {
+                   for (std::size_t k = 0; k < meshes_[m]->face_count(); ++k, ++f) {
+                     const auto& t = mesh.faces[f].vertex;
+                     const auto inside = [&](std::uint32_t v) { return v >= begin && v < end; };
+                     if (inside(t[0]) || inside(t[1]) || inside(t[2])) add_face(f, m, begin, end, scratch);
+                   }
                  }
                  for (std::size_t v = begin; v < end; ++v) {
                    Quadric& q = mesh.quadrics[v];
@@ -389,32 +399,26 @@ void Builder::add_face_quadrics() {
                });
 }
 
-/// Adds face f to those of its corners whose vertices are in [begin, end).
-void Builder::add_face(std::uint32_t f, std::size_t begin, std::size_t end, FaceAttributes& scratch) {
+/// Adds face f of mesh m to those of its corners whose vertices are in [begin, end).
+void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
+                       std::vector<double>& scratch) {
   CollapseMesh& mesh = state_.mesh;
   const auto& t = mesh.faces[f].vertex;
-  const double w = area_[f] / 3;
+  const Vec3d p0 = mesh.vertices[t[0]].position;
   Quadric q;
-  q.add_linear(normal_[f], -dot(normal_[f], mesh.vertices[t[0]].position), w);
-  q.weight = w;
-  for (Channel& channel : state_.channels) {
-    if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid || !(area_[f] > 1e-16))
-      continue;
-    const double damping = find_slopes(channel, f, scratch);
-    const auto width = static_cast<std::size_t>(channel.fit_width);
-    for (std::size_t k = 0; k < width; ++k) q.add_linear(scratch.gradient[k], scratch.origin[k], w * damping);
-    for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
-      const std::uint32_t v = mesh.vertex(c);
-      if (v < begin || v >= end) continue;
-      const double share = w * damping * weight_of(v);
-      double* value = channel.value_quadric(channel.corner_value[c]);
-      for (std::size_t k = 0; k < width; ++k) {
-        value[4 * k] += share * scratch.gradient[k].x;
-        value[4 * k + 1] += share * scratch.gradient[k].y;
-        value[4 * k + 2] += share * scratch.gradient[k].z;
-        value[4 * k + 3] += share * scratch.origin[k];
+  q.weight = area_[f] / 3;
+  q.add_linear(normal_[f], -dot(normal_[f], p0), q.weight);
+  if (area_[f] > 1e-16) {
+    const FaceFrame frame{f, m, q.weight, p0,
+                          TriangleGradient(mesh.vertices[t[1]].position - p0,
+                                           mesh.vertices[t[2]].position - p0, normal_[f], 2 * area_[f])};
+    for (Channel& channel : state_.channels) {
+      if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid) continue;
+      switch (channel.fit_width) {
+        case 2: add_slopes<2>(channel, frame, begin, end, scratch, q); break;
+        case 3: add_slopes<3>(channel, frame, begin, end, scratch, q); break;
+        default: add_slopes<0>(channel, frame, begin, end, scratch, q);
       }
-      value[4 * width] += share;
     }
   }
   for (const std::uint32_t v : t) {
@@ -422,28 +426,42 @@ void Builder::add_face(std::uint32_t f, std::size_t begin, std::size_t end, Face
   }
 }
 
-/// The linear functions of a channel's components over face f, in lengths. Returns by how much they
-/// are damped for being too steep.
-double Builder::find_slopes(const Channel& channel, std::uint32_t f, FaceAttributes& out) const {
-  const auto& t = state_.mesh.faces[f].vertex;
-  const auto width = static_cast<std::size_t>(channel.fit_width);
-  out.gradient.resize(std::max(out.gradient.size(), width));
-  out.origin.resize(std::max(out.origin.size(), width));
-  const double scale = channel.scale[state_.slot_of_face(f)];
-  const Vec3d p0 = state_.mesh.vertices[t[0]].position;
-  const TriangleGradient along(state_.mesh.vertices[t[1]].position - p0,
-                               state_.mesh.vertices[t[2]].position - p0, normal_[f], 2 * area_[f]);
-  const float* s[3];
-  for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * f + k]);
+/// Adds how a channel runs over a face, as linear functions in lengths, to the face's quadric and to those
+/// of its values. What is too steep is damped. `kWidth` is what fits the channel, or 0 for any.
+template <int kWidth>
+void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
+                         std::vector<double>& scratch, Quadric& q) {
+  const int width = kWidth > 0 ? kWidth : channel.fit_width;
+  const std::size_t stride = attribute_stride(width);
+  scratch.resize(std::max(scratch.size(), stride));
+  double* const slopes = scratch.data();  // in the layout of attribute quadrics
+  const double scale = channel.scale[frame.mesh];
+  std::array<const float*, 3> s;
+  for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * frame.face + k]);
   double steepness = 0;
-  for (std::size_t k = 0; k < width; ++k) {
-    const Vec3d g = along(s[0][k], s[1][k], s[2][k]) * scale;
-    out.gradient[k] = g;
-    out.origin[k] = scale * s[0][k] - dot(g, p0);
+  for (int k = 0; k < width; ++k) {
+    const Vec3d g = frame.gradient(s[0][k], s[1][k], s[2][k]) * scale;
+    slopes[4 * k] = g.x;
+    slopes[4 * k + 1] = g.y;
+    slopes[4 * k + 2] = g.z;
+    slopes[4 * k + 3] = scale * s[0][k] - dot(g, frame.origin);
     steepness += dot(g, g);
   }
   const double limit = steepness_limit(channel, scale);
-  return steepness > limit ? limit / steepness : 1;
+  const double share = frame.weight * (steepness > limit ? limit / steepness : 1);
+  for (int k = 0; k < width; ++k) {
+    const double* g = slopes + 4 * k;
+    q.add_linear({g[0], g[1], g[2]}, g[3], share);
+  }
+  slopes[4 * width] = 1;
+  for (std::size_t i = 0; i < stride; ++i) slopes[i] *= share;
+  for (std::uint32_t c = 3 * frame.face; c < 3 * frame.face + 3; ++c) {
+    const std::uint32_t v = state_.mesh.vertex(c);
+    if (v < begin || v >= end) continue;
+    const double weight = weight_of(v);
+    double* const value = channel.value_quadric(channel.corner_value[c]);
+    for (std::size_t i = 0; i < stride; ++i) value[i] += weight * slopes[i];
+  }
 }
 
 /// Whether two faces on one edge, at corners whose edge it is, differ in texture coordinates or part.
@@ -516,17 +534,9 @@ void Builder::price_components() {
 
 }  // namespace
 
-std::uint32_t CollapseState::slot_of_vertex(std::uint32_t v) const {
-  const auto after =
-      std::upper_bound(slots.begin(), slots.end(), v,
-                       [](std::uint32_t x, const MeshSlot& slot) { return x < slot.first_vertex; });
-  return static_cast<std::uint32_t>(after - slots.begin()) - 1;
-}
-
-std::uint32_t CollapseState::slot_of_face(std::uint32_t f) const {
-  const auto after =
-      std::upper_bound(slots.begin(), slots.end(), f,
-                       [](std::uint32_t x, const MeshSlot& slot) { return x < slot.first_face; });
+std::uint32_t CollapseState::find_slot(std::uint32_t item, std::uint32_t MeshSlot::*first) const {
+  const auto after = std::upper_bound(slots.begin(), slots.end(), item,
+                                      [&](std::uint32_t x, const MeshSlot& slot) { return x < slot.*first; });
   return static_cast<std::uint32_t>(after - slots.begin()) - 1;
 }
 

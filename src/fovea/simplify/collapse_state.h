@@ -78,14 +78,20 @@ struct VanishCandidate {
 /// scene's diagonal so that costs of different meshes compare.
 struct CollapseState {
   CollapseMesh mesh;
-  std::vector<CollapseVertex> vertices;  // [#V]
   std::vector<Channel> channels;
   std::vector<MeshSlot> slots;  // [#meshes]
   FaceComponents components;
   std::vector<VanishCandidate> vanish;  // [#components]
 
-  std::uint32_t slot_of_vertex(std::uint32_t v) const;
-  std::uint32_t slot_of_face(std::uint32_t f) const;
+  std::uint32_t slot_of_vertex(std::uint32_t v) const {
+    return slots.size() == 1 ? 0 : find_slot(v, &MeshSlot::first_vertex);
+  }
+  std::uint32_t slot_of_face(std::uint32_t f) const {
+    return slots.size() == 1 ? 0 : find_slot(f, &MeshSlot::first_face);
+  }
+
+ private:
+  std::uint32_t find_slot(std::uint32_t item, std::uint32_t MeshSlot::*first) const;
 };
 
 /// Lays out `meshes` (with their scales in scene units and importance fields, which may be empty) and

@@ -1,6 +1,8 @@
 #include "fovea/simplify/edge_cost.h"
 
 #include <algorithm>
+#include <array>
+#include <type_traits>
 
 #include "fovea/simplify/value_classes.h"
 
@@ -11,33 +13,48 @@ namespace {
 /// Optimal positions further from the edge than this many edge lengths are not believed.
 constexpr double kReach = 2;
 
-/// The sum of attribute quadrics of one channel.
+/// The sum of attribute quadrics of one channel. `kWidth` is what fits the channel, or 0 for any.
+template <int kWidth>
 class AttributeSum {
  public:
-  explicit AttributeSum(std::size_t stride) : stride_(stride) {
-    if (stride > near_.size()) far_.resize(stride);
-  }
+  explicit AttributeSum(int width) : stride_(attribute_stride(width)) {}
   void add(const double* q) {
-    double* const total = far_.empty() ? near_.data() : far_.data();
-    for (std::size_t i = 0; i < stride_; ++i) total[i] = (sum_ == nullptr ? 0 : sum_[i]) + q[i];
-    sum_ = total;
+    const std::size_t stride = kWidth > 0 ? attribute_stride(kWidth) : stride_;
+    if (sum_ == nullptr) {
+      sum_ = q;  // most often nothing else comes, or one more
+      return;
+    }
+    if constexpr (kWidth == 0) total_.resize(stride);
+    for (std::size_t i = 0; i < stride; ++i) total_[i] = sum_[i] + q[i];
+    sum_ = total_.data();
   }
   const double* get() const { return sum_; }
 
  private:
   std::size_t stride_;
   const double* sum_ = nullptr;
-  std::array<double, attribute_stride(4)> near_;
-  std::vector<double> far_;  // of wide channels
+  std::conditional_t<kWidth == 0, std::vector<double>, std::array<double, attribute_stride(kWidth)>> total_;
 };
 
-/// Adds the error of a sum of attribute quadrics whose texture coordinates stay those of `value`.
+/// Adds the error of an attribute quadric whose texture coordinates stay those of `value`.
 void hold_at(Quadric& q, const Channel& channel, const double* attribute, std::uint32_t value,
-             std::uint32_t mesh) {
+             std::uint32_t mesh, double times = 1) {
   const double scale = channel.scale[mesh];
   const float* numbers = channel.value(value);
   const double scaled[2] = {scale * numbers[0], scale * numbers[1]};
-  hold(q, attribute, channel.fit_width, scaled);
+  hold(q, attribute, 2, scaled, times);
+}
+
+/// Adds what a value makes up for by itself: texture coordinates at a seam stay as they are, everything else
+/// becomes the best for the position. With `times` −1 it takes that back.
+void settle_alone(Quadric& q, const Channel& channel, int width, std::uint32_t value, std::uint32_t mesh,
+                  double times = 1) {
+  const double* const attribute = channel.value_quadric(value);
+  if (channel.is_uv()) {
+    hold_at(q, channel, attribute, value, mesh, times);
+  } else {
+    reduce(q, attribute, width, times);
+  }
 }
 
 }  // namespace
@@ -59,7 +76,8 @@ void EdgeCost::refresh(std::uint32_t v) {
     }
     std::sort(values_.begin(), values_.end());
     values_.erase(std::unique(values_.begin(), values_.end()), values_.end());
-    for (const std::uint32_t value : values_) sum += separate(channel, v, value);
+    for (const std::uint32_t value : values_)
+      settle_alone(sum, channel, channel.fit_width, value, state_.slot_of_vertex(v));
   }
   if (!many) {
     slot_[v] = kInvalid;
@@ -74,87 +92,59 @@ void EdgeCost::refresh(std::uint32_t v) {
 
 Quadric EdgeCost::separate(const Channel& channel, std::uint32_t v, std::uint32_t value) const {
   Quadric q;
-  const double* const attribute = channel.value_quadric(value);
-  if (channel.is_uv()) {
-    hold_at(q, channel, attribute, value, state_.slot_of_vertex(v));
-  } else {
-    reduce(q, attribute, channel.fit_width);
-  }
+  settle_alone(q, channel, channel.fit_width, value, state_.slot_of_vertex(v));
   return q;
-}
-
-EdgeCost::EdgeCorners EdgeCost::corners_of(std::uint32_t a, std::uint32_t b) const {
-  EdgeCorners corners;
-  const bool from_a = mesh_.vertices[a].ring_size <= mesh_.vertices[b].ring_size;
-  const std::uint32_t other = from_a ? b : a;
-  mesh_.for_ring(from_a ? a : b, [&](std::uint32_t c) {
-    for (const std::uint32_t d : {CollapseMesh::next(c), CollapseMesh::previous(c)}) {
-      if (mesh_.vertex(d) != other || corners.count == EdgeCorners::kMost) continue;
-      corners.pairs[corners.count][0] = from_a ? c : d;
-      corners.pairs[corners.count++][1] = from_a ? d : c;
-    }
-  });
-  return corners;
 }
 
 /// For a channel with several values at an end: those that join on the edge are settled together instead
 /// of by themselves.
+template <int kWidth>
 void EdgeCost::settle_joined(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
                              const EdgeCorners& corners) const {
-  struct Member {
-    std::uint32_t value = kInvalid;
-    bool at_b = false;
-    std::size_t root = 0;
-  };
-  std::array<Member, 2 * EdgeCorners::kMost> members;
-  std::size_t count = 0;
-  const auto add = [&](std::uint32_t value, bool at_b) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (members[i].value == value) return i;
-    }
-    members[count] = {value, at_b, count};
-    return count++;
-  };
-  for (std::size_t i = 0; i < corners.count; ++i) {
-    const auto [ca, cb] = corners.pairs[i];
-    if (channel.corner_value[ca] == kInvalid || channel.corner_value[cb] == kInvalid) continue;
-    const std::size_t x = members[add(channel.corner_value[ca], false)].root;
-    const std::size_t y = members[add(channel.corner_value[cb], true)].root;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (members[k].root == std::max(x, y)) members[k].root = std::min(x, y);
-    }
-  }
+  const int width = kWidth > 0 ? kWidth : channel.fit_width;
+  const std::uint32_t mesh = state_.slot_of_vertex(a);
   const bool many_a = channel.single[a] == Channel::kMany, many_b = channel.single[b] == Channel::kMany;
-  for (std::size_t root = 0; root < count; ++root) {
-    if (members[root].root != root) continue;
-    AttributeSum sum(attribute_stride(channel.fit_width));
+  const JoinedValues joined(channel, corners);
+  for (std::uint32_t root = 0; root < joined.size(); ++root) {
+    if (joined[root].root != root) continue;
+    AttributeSum<kWidth> sum(width);
     ClassEnds ends;
-    for (std::size_t k = root; k < count; ++k) {
-      const Member& member = members[k];
+    for (std::uint32_t k = root; k < joined.size(); ++k) {
+      const JoinedValues::Member& member = joined[k];
       if (member.root != root) continue;
       sum.add(channel.value_quadric(member.value));
       ends.add(member.value, member.at_b);
-      if (member.at_b ? many_b : many_a)
-        q.add_scaled(separate(channel, member.at_b ? b : a, member.value), -1);
+      if (member.at_b ? many_b : many_a) settle_alone(q, channel, width, member.value, mesh, -1);
     }
     const std::uint32_t held = channel.is_uv() ? ends.held_value(many_a, many_b) : kInvalid;
     if (held == kInvalid) {
-      reduce(q, sum.get(), channel.fit_width);
+      reduce(q, sum.get(), width);
     } else {
-      hold_at(q, channel, sum.get(), held, state_.slot_of_vertex(a));
+      hold_at(q, channel, sum.get(), held, mesh);
     }
   }
   // An end's only value that no triangle on the edge uses.
-  const auto add_single = [&](std::uint32_t v) {
+  for (const std::uint32_t v : {a, b}) {
     const std::uint32_t single = channel.single[v];
-    if (single >= Channel::kMany) return;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (members[i].value == single) return;
-    }
-    q += separate(channel, v, single);
-  };
-  add_single(a);
-  add_single(b);
+    if (single < Channel::kMany && !joined.contains(single)) settle_alone(q, channel, width, single, mesh);
+  }
+}
+
+/// Adds what the values of one channel make up for, beyond those in `separate_`.
+template <int kWidth>
+void EdgeCost::settle(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+                      const EdgeCorners& corners) const {
+  const int width = kWidth > 0 ? kWidth : channel.fit_width;
+  const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
+  if (single_a == Channel::kMany || single_b == Channel::kMany) {
+    settle_joined<kWidth>(q, channel, a, b, corners);
+    return;
+  }
+  AttributeSum<kWidth> sum(width);
+  for (const std::uint32_t single : {single_a, single_b}) {
+    if (single != kInvalid) sum.add(channel.value_quadric(single));
+  }
+  if (sum.get() != nullptr) reduce(q, sum.get(), width);
 }
 
 Quadric EdgeCost::quadric(std::uint32_t a, std::uint32_t b) const {
@@ -162,22 +152,17 @@ Quadric EdgeCost::quadric(std::uint32_t a, std::uint32_t b) const {
   EdgeCorners corners;
   const std::uint32_t slot_a = slot_[a], slot_b = slot_[b];
   if (slot_a != kInvalid || slot_b != kInvalid) {
-    corners = corners_of(a, b);
+    corners = mesh_.edge_corners(a, b);
     if (slot_a != kInvalid) q += separate_[slot_a];
     if (slot_b != kInvalid) q += separate_[slot_b];
   }
   for (const Channel& channel : state_.channels) {
     if (channel.kind != ChannelKind::fitted) continue;
-    const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
-    if (single_a == Channel::kMany || single_b == Channel::kMany) {
-      settle_joined(q, channel, a, b, corners);
-    } else if (single_a != kInvalid && single_b != kInvalid) {
-      AttributeSum sum(attribute_stride(channel.fit_width));
-      sum.add(channel.value_quadric(single_a));
-      sum.add(channel.value_quadric(single_b));
-      reduce(q, sum.get(), channel.fit_width);
-    } else if (single_a != kInvalid || single_b != kInvalid) {
-      reduce(q, channel.value_quadric(std::min(single_a, single_b)), channel.fit_width);
+    switch (channel.fit_width) {
+      case 2: settle<2>(q, channel, a, b, corners); break;
+      case 3: settle<3>(q, channel, a, b, corners); break;
+      case 4: settle<4>(q, channel, a, b, corners); break;
+      default: settle<0>(q, channel, a, b, corners);
     }
   }
   return q;

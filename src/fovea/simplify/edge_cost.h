@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -43,13 +42,10 @@ class EdgeCost {
   std::size_t fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const;
 
  private:
-  /// Corners at a and b of the triangles on an edge; of those beyond a few, values are not joined.
-  struct EdgeCorners {
-    static constexpr std::size_t kMost = 8;
-    std::array<std::array<std::uint32_t, 2>, kMost> pairs;
-    std::size_t count = 0;
-  };
-  EdgeCorners corners_of(std::uint32_t a, std::uint32_t b) const;
+  template <int kWidth>
+  void settle(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+              const EdgeCorners& corners) const;
+  template <int kWidth>
   void settle_joined(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
                      const EdgeCorners& corners) const;
 

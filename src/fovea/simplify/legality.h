@@ -1,7 +1,7 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "fovea/simplify/collapse_state.h"
@@ -18,28 +18,36 @@ class Legality {
  public:
   explicit Legality(CollapseState& state) : state_(state) {}
 
-  /// The link condition (Dey et al. 1999): the neighbours that a and b share are those across their
-  /// common triangles, an inner edge does not join two boundaries, and no two triangles come to lie
-  /// on each other. Returns whether it holds; `topology` says what is wrong: `last` if no triangle
-  /// would be left around the edge, else `topology`.
+  /// Looks at the edge a–b, which the other rules are then about: the link condition (Dey et al. 1999).
+  /// The neighbours that a and b share are those across their common triangles, an inner edge does not
+  /// join two boundaries, and no two triangles come to lie on each other. Returns whether it holds;
+  /// `topology` says what is wrong: `last` if no triangle would be left around the edge, else `topology`.
   bool look_at(std::uint32_t a, std::uint32_t b);
   Block topology() const { return topology_; }
-  /// Whether the edge last looked at leaves triangles on each other.
+  /// Whether the edge leaves triangles on each other.
   bool may_coincide() const { return topology_ == Block::topology; }
 
-  /// No triangle around a or b turns over, or becomes a sliver that it was not, when both move to p.
-  bool shape(std::uint32_t a, std::uint32_t b, Vec3d p) const;
+  /// No triangle around the edge turns over, or becomes a sliver that it was not, when both ends move
+  /// to p.
+  bool shape(Vec3d p) const;
   /// No triangle turns over in any texture map when the values of `merge` are set.
-  bool texture(std::uint32_t a, std::uint32_t b, const ValueMerge& merge) const;
+  bool texture(const ValueMerge& merge) const;
 
  private:
-  bool keeps_shape(std::uint32_t c, std::uint32_t other, Vec3d p) const;
-  bool keeps_texture(std::uint32_t c, std::uint32_t other, std::size_t channel,
-                     const ValueMerge& merge) const;
+  /// A triangle at one end of the edge only: what stays, and changes its shape.
+  struct Far {
+    std::uint32_t corner;          // at the end
+    std::uint32_t next, previous;  // vertices
+  };
+  bool keeps_shape(const Far& face, Vec3d from, Vec3d to) const;
+  bool keeps_texture(const Far& face, std::size_t channel, const ValueMerge& merge) const;
 
   CollapseState& state_;  // for the vertices' marks; nothing else changes
   Block topology_ = Block::none;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> far_edges_;
+  std::uint32_t a_ = kInvalid, b_ = kInvalid;
+  std::vector<Far> far_;  // those at a, then those at b
+  std::size_t far_at_a_ = 0;
+  std::vector<std::uint32_t> across_;  // vertices opposite to the edge
 };
 
 }  // namespace fovea

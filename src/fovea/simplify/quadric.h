@@ -78,24 +78,27 @@ struct Quadric {
 /// In memory: `width` times (G, D), then W; see `attribute_stride`.
 constexpr std::size_t attribute_stride(int width) { return 4 * static_cast<std::size_t>(width) + 1; }
 
-/// Subtracts Σ_k (G_k·p + D_k)² / W from q: the value of each component is the best for p.
-inline void reduce(Quadric& q, const double* attribute, int width) {
+/// Subtracts Σ_k (G_k·p + D_k)² / W from q: the value of each component is the best for p. With
+/// `times` −1 it takes that back.
+inline void reduce(Quadric& q, const double* attribute, int width, double times = 1) {
   const double weight = attribute[4 * width];
   if (!(weight > 0)) return;
-  const double inverse = 1 / weight;
+  const double factor = -times / weight;
   for (int k = 0; k < width; ++k) {
     const double* g = attribute + 4 * k;
-    q.add_linear({g[0], g[1], g[2]}, g[3], -inverse);
+    q.add_linear({g[0], g[1], g[2]}, g[3], factor);
   }
 }
 
-/// Adds Σ_k −2 s_k (G_k·p + D_k) + W s_k²: the value of each component stays s_k wherever p is.
-inline void hold(Quadric& q, const double* attribute, int width, const double* s) {
+/// Adds Σ_k −2 s_k (G_k·p + D_k) + W s_k²: the value of each component stays s_k wherever p is. With
+/// `times` −1 it takes that back.
+inline void hold(Quadric& q, const double* attribute, int width, const double* s, double times = 1) {
   const double weight = attribute[4 * width];
   for (int k = 0; k < width; ++k) {
     const double* g = attribute + 4 * k;
-    q.bx -= s[k] * g[0], q.by -= s[k] * g[1], q.bz -= s[k] * g[2];
-    q.c += s[k] * (weight * s[k] - 2 * g[3]);
+    const double t = times * s[k];
+    q.bx -= t * g[0], q.by -= t * g[1], q.bz -= t * g[2];
+    q.c += t * (weight * s[k] - 2 * g[3]);
   }
 }
 

@@ -24,9 +24,9 @@ struct CollapseStep {
   VertexId removed, kept;  ///< collapse: `removed` became `kept`; vanish: none.
   Vec3f position;          ///< Where `kept` is from now on, if it moved.
   float error_rel = 0;     ///< Largest error of all steps so far, of the scene's diagonal.
-  // Ends of this step's runs in the record's lists; they begin where the step before it ends.
+  // Ends of this step's runs in the record's lists; they begin where the step before it ends. Numbers have
+  // no end of their own: every write says how many it has.
   std::uint32_t faces_end = 0, joins_end = 0, writes_end = 0;
-  std::uint64_t floats_end = 0;
 };
 
 /// Two values of a layer became one: corners with `removed` have `kept` from now on.
@@ -49,9 +49,13 @@ struct CollapseRecord {
   std::vector<FaceId> removed_faces;
   std::vector<ValueJoin> joins;
   std::vector<ValueWrite> writes;
-  std::vector<float> floats;  ///< New numbers of `writes`, in order.
-  /// Triangles left over all meshes after the first n steps, [#steps + 1].
-  std::vector<std::uint64_t> triangles_after;
+  std::vector<float> floats;           ///< New numbers of `writes`, in order.
+  std::uint64_t triangles_before = 0;  ///< Over all meshes.
+
+  /// Triangles left over all meshes after the first n steps.
+  std::uint64_t triangles_after(std::size_t n) const {
+    return triangles_before - (n > 0 ? steps[n - 1].faces_end : 0);
+  }
 };
 
 /// The meshes after the first `step_count` steps. `sources` are the meshes that were simplified, in

@@ -136,17 +136,11 @@ void append(CollapseRecord& all, CollapseRecord&& batch, const std::vector<std::
   const auto faces = static_cast<std::uint32_t>(all.removed_faces.size());
   const auto joins = static_cast<std::uint32_t>(all.joins.size());
   const auto writes = static_cast<std::uint32_t>(all.writes.size());
-  const std::uint64_t floats = all.floats.size();
-  const std::uint64_t before = all.triangles_after.back(), batch_before = batch.triangles_after.front();
-  for (std::size_t i = 0; i < batch.steps.size(); ++i) {
-    CollapseStep step = batch.steps[i];
+  for (CollapseStep& step : batch.steps) {
     step.mesh = static_cast<std::uint32_t>(mesh_index[step.mesh]);
     step.faces_end += faces;
     step.joins_end += joins;
     step.writes_end += writes;
-    step.floats_end += floats;
-    all.steps.push_back(step);
-    all.triangles_after.push_back(before - (batch_before - batch.triangles_after[i + 1]));
   }
   const auto take = [](auto& to, auto&& from) {
     if (to.empty()) {
@@ -155,6 +149,7 @@ void append(CollapseRecord& all, CollapseRecord&& batch, const std::vector<std::
       to.insert(to.end(), from.begin(), from.end());
     }
   };
+  take(all.steps, std::move(batch.steps));
   take(all.removed_faces, std::move(batch.removed_faces));
   take(all.joins, std::move(batch.joins));
   take(all.writes, std::move(batch.writes));
@@ -213,8 +208,8 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
 
   SimplifyResult result;
   for (const Batch& batch : batches) result.triangles_before += batch.triangles;
-  result.record.triangles_after.push_back(result.triangles_before);
-  result.model = model;
+  result.record.triangles_before = result.triangles_before;
+  std::vector<std::vector<TriMesh>> levels;
   for (const Batch& batch : batches) {
     const auto target = triangle_target(options, batch.triangles, result.triangles_before);
     result.triangles_target += target.value_or(0);
@@ -224,12 +219,15 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
         collapse(state, target.value_or(0), error_bound(options, diagonal), options, context);
     state = {};
     combine(result, outcome);
-    std::vector<TriMesh> meshes = replay(batch.meshes, outcome.record, outcome.record.steps.size());
-    for (std::size_t i = 0; i < meshes.size(); ++i)
-      result.model.meshes[batch.mesh_index[i]].surface = std::move(meshes[i]);
+    levels.push_back(replay(batch.meshes, outcome.record, outcome.record.steps.size()));
     append(result.record, std::move(outcome.record), batch.mesh_index);
   }
-  result.triangles_after = result.record.triangles_after.back();
+  result.model = model;  // not before: while the engine runs memory is scarce
+  for (std::size_t i = 0; i < batches.size(); ++i) {
+    for (std::size_t k = 0; k < levels[i].size(); ++k)
+      result.model.meshes[batches[i].mesh_index[k]].surface = std::move(levels[i][k]);
+  }
+  result.triangles_after = result.record.triangles_after(result.record.steps.size());
   result.error_abs = result.error_rel * diagonal;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -5,19 +5,92 @@
 
 namespace fovea {
 
-namespace {
+// --- Values that join -------------------------------------------------------------------------------
 
-/// Up to so many values are searched one after the other.
-constexpr std::size_t kFew = 16;
-
-}  // namespace
-
-std::uint32_t ValueClasses::index_of(std::uint32_t value) const {
-  if (entries_.size() > kFew) return table_[slot_of(value)];
-  std::uint32_t i = 0;
-  while (i < entries_.size() && entries_[i].value != value) ++i;
-  return i < entries_.size() ? i : kInvalid;
+JoinedValues::JoinedValues(const Channel& channel, const EdgeCorners& corners) {
+  for (std::size_t i = 0; i < corners.count; ++i) {
+    const std::uint32_t at_a = channel.corner_value[corners.pairs[i][0]],
+                        at_b = channel.corner_value[corners.pairs[i][1]];
+    if (at_a == kInvalid || at_b == kInvalid) continue;
+    const std::uint32_t x = members_[add(at_a, false)].root, y = members_[add(at_b, true)].root;
+    if (x == y) continue;
+    for (std::uint32_t k = 0; k < count_; ++k) {
+      if (members_[k].root == std::max(x, y)) members_[k].root = std::min(x, y);
+    }
+  }
 }
+
+std::uint32_t JoinedValues::add(std::uint32_t value, bool at_b) {
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    if (members_[i].value == value) return i;
+  }
+  members_[count_] = {value, count_, at_b};
+  return count_++;
+}
+
+bool JoinedValues::contains(std::uint32_t value) const {
+  return std::any_of(members_.begin(), members_.begin() + count_,
+                     [&](const Member& member) { return member.value == value; });
+}
+
+// --- All values -------------------------------------------------------------------------------------
+
+void ValueClasses::find(const CollapseMesh& mesh, const Channel& channel, std::uint32_t a, std::uint32_t b,
+                        const EdgeCorners& corners) {
+  entries_.clear();
+  const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
+  if (single_a < Channel::kMany && single_b < Channel::kMany) {
+    entries_.push_back({single_a, 0, 1, false, single_b});
+    entries_.push_back({single_b, 0, kInvalid, true, kInvalid});
+    return;
+  }
+  const JoinedValues joined(channel, corners);
+  for (std::uint32_t i = 0; i < joined.size(); ++i) {
+    const auto& [value, root, at_b] = joined[i];
+    entries_.push_back({value, root, kInvalid, at_b, value});
+    if (root == i) continue;
+    std::uint32_t last = root;
+    while (entries_[last].next != kInvalid) last = entries_[last].next;
+    entries_[last].next = i;
+    // The root is at a: corners at a come first.
+    if (at_b && entries_[root].kept == entries_[root].value) entries_[root].kept = value;
+  }
+  add_rest(mesh, channel, a, false);
+  add_rest(mesh, channel, b, true);
+}
+
+/// Adds the values at v that join with none.
+void ValueClasses::add_rest(const CollapseMesh& mesh, const Channel& channel, std::uint32_t v, bool at_b) {
+  const std::uint32_t single = channel.single[v];
+  if (single != Channel::kMany) {
+    if (single != kInvalid && index_of(single) == kInvalid) add_class(single, at_b);
+    return;
+  }
+  for (const std::uint32_t c : mesh.ring(v)) {
+    const std::uint32_t value = channel.corner_value[c];
+    if (value != kInvalid && index_of(value) == kInvalid) add_class(value, at_b);
+  }
+}
+
+void ValueClasses::add_class(std::uint32_t value, bool at_b) {
+  const auto index = static_cast<std::uint32_t>(entries_.size());
+  entries_.push_back({value, index, kInvalid, at_b, value});
+  if (entries_.size() == kFew + 1 || (entries_.size() > kFew && 2 * entries_.size() > table_.size())) {
+    rebuild_table();
+  } else if (entries_.size() > kFew) {
+    table_[slot_of(value)] = index;
+  }
+}
+
+std::uint32_t ValueClasses::held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,
+                                       std::uint32_t root) const {
+  if (!channel.is_uv()) return kInvalid;
+  ClassEnds ends;
+  for_class(root, [&](const Entry& entry) { ends.add(entry.value, entry.at_b); });
+  return ends.held_value(channel.single[a] == Channel::kMany, channel.single[b] == Channel::kMany);
+}
+
+std::uint32_t ValueClasses::index_in_table(std::uint32_t value) const { return table_[slot_of(value)]; }
 
 /// Where `value` is in the table, or where it would go.
 std::size_t ValueClasses::slot_of(std::uint32_t value) const {
@@ -30,66 +103,6 @@ std::size_t ValueClasses::slot_of(std::uint32_t value) const {
 void ValueClasses::rebuild_table() {
   table_.assign(std::bit_ceil(4 * entries_.size()), kInvalid);
   for (std::uint32_t i = 0; i < entries_.size(); ++i) table_[slot_of(entries_[i].value)] = i;
-}
-
-/// Index of the entry of `value`, which is new if need be.
-std::uint32_t ValueClasses::add(std::uint32_t value, bool at_b) {
-  const std::uint32_t known = index_of(value);
-  if (known != kInvalid) return known;
-  const auto index = static_cast<std::uint32_t>(entries_.size());
-  entries_.push_back({value, index, kInvalid, at_b});
-  if (entries_.size() == kFew + 1 || (entries_.size() > kFew && 2 * entries_.size() > table_.size())) {
-    rebuild_table();
-  } else if (entries_.size() > kFew) {
-    table_[slot_of(value)] = index;
-  }
-  return index;
-}
-
-void ValueClasses::join(std::uint32_t i, std::uint32_t j) {
-  if (entries_[i].root == entries_[j].root) return;
-  const std::uint32_t keep = std::min(entries_[i].root, entries_[j].root);
-  const std::uint32_t drop = std::max(entries_[i].root, entries_[j].root);
-  for (std::uint32_t k = drop; k != kInvalid; k = entries_[k].next) entries_[k].root = keep;
-  std::uint32_t last = keep;
-  while (entries_[last].next != kInvalid) last = entries_[last].next;
-  entries_[last].next = drop;
-}
-
-void ValueClasses::find(const CollapseState& state, const Channel& channel, std::uint32_t a,
-                        std::uint32_t b) {
-  entries_.clear();
-  const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
-  if (single_a < Channel::kMany) add(single_a, false);
-  if (single_b < Channel::kMany) add(single_b, true);
-  if (single_a < Channel::kMany && single_b < Channel::kMany) {
-    join(0, 1);
-    return;
-  }
-  // Only the rings of vertices with several values are looked at, and the first of them for triangles
-  // on the edge.
-  const CollapseMesh& mesh = state.mesh;
-  const auto look_around = [&](std::uint32_t v, std::uint32_t other, bool joins) {
-    mesh.for_ring(v, [&](std::uint32_t c) {
-      const std::uint32_t value = channel.corner_value[c];
-      if (value == kInvalid) return;
-      const std::uint32_t own = add(value, v == b);
-      if (!joins) return;
-      for (const std::uint32_t d : {CollapseMesh::next(c), CollapseMesh::previous(c)}) {
-        if (mesh.vertex(d) == other) join(own, add(channel.corner_value[d], other == b));
-      }
-    });
-  };
-  if (single_a == Channel::kMany) look_around(a, b, true);
-  if (single_b == Channel::kMany) look_around(b, a, single_a != Channel::kMany);
-}
-
-std::uint32_t ValueClasses::held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,
-                                       std::uint32_t root) const {
-  if (!channel.is_uv()) return kInvalid;
-  ClassEnds ends;
-  for_class(root, [&](const Entry& entry) { ends.add(entry.value, entry.at_b); });
-  return ends.held_value(channel.single[a] == Channel::kMany, channel.single[b] == Channel::kMany);
 }
 
 }  // namespace fovea

@@ -30,11 +30,33 @@ struct ClassEnds {
   }
 };
 
-/// Which values of one channel become one when the edge a–b collapses.
+/// Which values of one channel become one when an edge a–b collapses.
 ///
 /// Every triangle on the edge vanishes, and with it the difference between its value at a and its
 /// value at b: the two join. On a plain edge that leaves one value; on a seam edge one per side; where
-/// a seam ends, the sides join at its end. Values of a or b that no such triangle uses live on.
+/// a seam ends, the sides join at its end.
+class JoinedValues {
+ public:
+  struct Member {
+    std::uint32_t value;
+    std::uint32_t root;  ///< Index of the first member that it joins with; its own if it is that.
+    bool at_b;
+  };
+
+  JoinedValues(const Channel& channel, const EdgeCorners& corners);
+  std::uint32_t size() const { return count_; }
+  const Member& operator[](std::size_t i) const { return members_[i]; }
+  bool contains(std::uint32_t value) const;
+
+ private:
+  std::uint32_t add(std::uint32_t value, bool at_b);
+
+  std::array<Member, 2 * EdgeCorners::kMost> members_;
+  std::uint32_t count_ = 0;
+};
+
+/// All values of one channel at the ends of an edge, in classes of those that become one. Values that no
+/// triangle on the edge uses live on in classes of their own.
 class ValueClasses {
  public:
   struct Entry {
@@ -42,10 +64,12 @@ class ValueClasses {
     std::uint32_t root = 0;         ///< Index of the class's first entry.
     std::uint32_t next = kInvalid;  ///< Index of the next entry of the class.
     bool at_b = false;
+    std::uint32_t kept = kInvalid;  ///< At roots, the value that the class becomes: its first at b, if any.
   };
 
-  /// Finds the classes of `channel` for the edge a–b.
-  void find(const CollapseState& state, const Channel& channel, std::uint32_t a, std::uint32_t b);
+  /// Finds the classes of `channel` for the edge a–b with these corners.
+  void find(const CollapseMesh& mesh, const Channel& channel, std::uint32_t a, std::uint32_t b,
+            const EdgeCorners& corners);
 
   std::size_t size() const { return entries_.size(); }
   const Entry& operator[](std::size_t i) const { return entries_[i]; }
@@ -58,11 +82,23 @@ class ValueClasses {
   std::uint32_t held_value(const Channel& channel, std::uint32_t a, std::uint32_t b,
                            std::uint32_t root) const;
   /// Index of the entry of a value that belongs to a or b.
-  std::uint32_t index_of(std::uint32_t value) const;
+  std::uint32_t index_of(std::uint32_t value) const {
+    if (entries_.size() > kFew) return index_in_table(value);
+    for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+      if (entries_[i].value == value) return i;
+    }
+    return kInvalid;
+  }
+  /// The value that `value` becomes.
+  std::uint32_t kept_for(std::uint32_t value) const { return entries_[entries_[index_of(value)].root].kept; }
 
  private:
-  std::uint32_t add(std::uint32_t value, bool at_b);
-  void join(std::uint32_t i, std::uint32_t j);
+  /// Up to so many values are searched one after the other.
+  static constexpr std::size_t kFew = 16;
+
+  void add_class(std::uint32_t value, bool at_b);
+  void add_rest(const CollapseMesh& mesh, const Channel& channel, std::uint32_t v, bool at_b);
+  std::uint32_t index_in_table(std::uint32_t value) const;
   std::size_t slot_of(std::uint32_t value) const;
   void rebuild_table();
 

@@ -12,10 +12,11 @@ void ValueMerge::plan(std::uint32_t a, std::uint32_t b, Vec3d p) {
   along_ = l2 > 0 ? static_cast<float>(std::clamp(dot(p - pa, edge) / l2, 0.0, 1.0)) : 0.5f;
   position_ = p;
   slot_ = state_.slot_of_vertex(a);
+  const EdgeCorners corners = state_.mesh.edge_corners(a, b);
   for (std::size_t i = 0; i < plans_.size(); ++i) {
     const Channel& channel = state_.channels[i];
     Plan& plan = plans_[i];
-    plan.classes.find(state_, channel, a, b);
+    plan.classes.find(state_.mesh, channel, a, b, corners);
     plan.values.resize(plan.classes.size() * static_cast<std::size_t>(channel.width));
     for (std::uint32_t root = 0; root < plan.classes.size(); ++root) {
       if (plan.classes[root].root != root) continue;
@@ -128,21 +129,9 @@ const float* ValueMerge::planned(std::size_t channel, std::uint32_t value) const
   return plan.values.data() + root * static_cast<std::size_t>(state_.channels[channel].width);
 }
 
-/// A class keeps the number of its value at b, if it has one there.
-std::uint32_t ValueMerge::kept_value(const ValueClasses& classes, std::uint32_t root) const {
-  std::uint32_t kept = classes[root].value;
-  bool found = false;
-  classes.for_class(root, [&](const ValueClasses::Entry& entry) {
-    if (!entry.at_b || found) return;
-    kept = entry.value;
-    found = true;
-  });
-  return kept;
-}
-
 void ValueMerge::record_class(const Channel& channel, const Plan& plan, std::uint32_t root,
-                              std::uint32_t kept, std::uint32_t mesh, CollapseRecord& record) const {
-  const std::uint32_t first = channel.first_value[mesh];
+                              std::uint32_t mesh, CollapseRecord& record) const {
+  const std::uint32_t first = channel.first_value[mesh], kept = plan.classes[root].kept;
   for (const ChannelSlice& slice : channel.slices[mesh]) {
     if (slice.layer != kInvalid) {
       plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
@@ -164,7 +153,7 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
     const std::size_t stride = attribute_stride(channel.fit_width);
     for (std::uint32_t root = 0; root < plan.classes.size(); ++root) {
       if (plan.classes[root].root != root) continue;
-      const std::uint32_t kept = kept_value(plan.classes, root);
+      const std::uint32_t kept = plan.classes[root].kept;
       if (!channel.quadric.empty()) {
         double* to = channel.value_quadric(kept);
         plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
@@ -175,20 +164,22 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
       }
       std::copy_n(plan.values.data() + root * static_cast<std::size_t>(channel.width), channel.width,
                   channel.value(kept));
-      record_class(channel, plan, root, kept, mesh, record);
+      record_class(channel, plan, root, mesh, record);
     }
     const auto relabel = [&](std::uint32_t c) {
       std::uint32_t& value = channel.corner_value[c];
-      if (value != kInvalid)
-        value = kept_value(plan.classes, plan.classes[plan.classes.index_of(value)].root);
+      if (value != kInvalid) value = plan.classes.kept_for(value);
     };
     state_.mesh.for_ring(a, relabel);
     state_.mesh.for_ring(b, relabel);
+    const bool many = channel.single[a] == Channel::kMany || channel.single[b] == Channel::kMany;
+    channel.single[b] = many ? Channel::kMany : plan.classes[0].kept;
   }
 }
 
 void ValueMerge::update_singles(std::uint32_t b) {
   for (Channel& channel : state_.channels) {
+    if (channel.single[b] != Channel::kMany) continue;
     std::uint32_t single = kInvalid;
     state_.mesh.for_ring(b, [&](std::uint32_t c) {
       const std::uint32_t value = channel.corner_value[c];
