@@ -196,8 +196,10 @@ void Engine::take_batch() {
     if (due.item >= edge_count_) continue;
     for (const std::uint32_t v : mesh_.edges[due.item].ends) {
       for (const Channel& channel : state_.channels) {
-        if (channel.kind == ChannelKind::fitted && channel.single[v] < Channel::kMany)
-          prefetch(channel.value_quadric(channel.single[v]));
+        if (channel.kind != ChannelKind::fitted || channel.single[v] >= Channel::kMany) continue;
+        const double* const quadric = channel.value_quadric(channel.single[v]);
+        prefetch(quadric);
+        prefetch(quadric + attribute_stride(channel.fit_width) - 1);
       }
     }
   }
@@ -226,26 +228,26 @@ void Engine::drop_dearer() {
 
 /// Fetches the triangles around the edges of the batch, then their vertices, all at once.
 void Engine::fetch_surroundings() const {
-  const auto for_faces = [&](auto&& f) {
+  const auto for_corners = [&](auto&& f) {
     for (const Due& due : batch_) {
       if (due.item >= edge_count_) continue;
       for (const std::uint32_t v : mesh_.edges[due.item].ends) {
-        for (const std::uint32_t c : mesh_.ring(v).first(std::min<std::size_t>(mesh_.ring(v).size(), 12)))
-          f(c / 3);
+        const auto ring = mesh_.ring(v);
+        for (const std::uint32_t c : ring.first(std::min<std::size_t>(ring.size(), 12))) f(c);
       }
     }
   };
-  for_faces([&](std::size_t f) {
-    prefetch(&mesh_.faces[f]);
-    for (const Channel& channel : state_.channels) prefetch(&channel.corner_value[3 * f]);
+  for_corners([&](std::uint32_t c) {
+    prefetch(&mesh_.faces[c / 3]);
+    for (const Channel& channel : state_.channels) prefetch(&channel.corner_value[c]);
   });
-  for_faces([&](std::size_t f) {
-    for (const std::uint32_t v : mesh_.faces[f].vertex) prefetch(&mesh_.vertices[v]);
+  // The vertices and values next to each corner: around a vertex that is all of them, once.
+  for_corners([&](std::uint32_t c) {
+    prefetch(&mesh_.vertices[mesh_.view(c).next]);
     for (const Channel& channel : state_.channels) {
       if (!channel.is_uv()) continue;
-      for (std::size_t c = 3 * f; c < 3 * f + 3; ++c) {
-        if (channel.corner_value[c] != kInvalid) prefetch(channel.value(channel.corner_value[c]));
-      }
+      const std::uint32_t value = channel.corner_value[CollapseMesh::next(c)];
+      if (value != kInvalid) prefetch(channel.value(value));
     }
   });
 }
