@@ -21,7 +21,7 @@ inline CollapseState state_of(const TriMesh& mesh, const SimplifyOptions& option
 inline std::uint32_t vertex_at(const CollapseState& state, Vec3f local) {
   const Vec3d p = state.slots[0].to_engine(local);
   for (std::uint32_t v = 0; v < state.mesh.vertices.size(); ++v) {
-    if (length(state.mesh.vertices[v].position - p) < 1e-6) return v;
+    if (length(state.mesh.position(v) - p) < 1e-6) return v;
   }
   return kInvalid;
 }

@@ -80,9 +80,9 @@ TEST(Legality, ATriangleMustNotTurnOverInTheTexture) {
   const std::uint32_t at_a = test::vertex_at(state, {0, 0, 0}), at_b = test::vertex_at(state, {1, 0, 0});
   ValueMerge merge(state, Placement::optimal);
   legality.look_at(at_a, at_b);
-  merge.plan(at_a, at_b, state.mesh.vertices[at_a].position);
+  merge.plan(at_a, at_b, state.mesh.position(at_a));
   EXPECT_TRUE(legality.texture(merge));
-  merge.plan(at_a, at_b, state.mesh.vertices[at_b].position);
+  merge.plan(at_a, at_b, state.mesh.position(at_b));
   EXPECT_FALSE(legality.texture(merge));
 }
 

@@ -337,13 +337,13 @@ void Engine::try_vanish(std::uint32_t component) {
 
 void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error) {
   if (mesh_.vertices[a].locked ||
-      (!mesh_.vertices[b].locked && where.position == mesh_.vertices[a].position)) {
+      (!mesh_.vertices[b].locked && where.position == mesh_.position(a))) {
     std::swap(a, b);
     merge_.plan(a, b, where.position);
   }
   const std::uint32_t m = state_.slot_of_vertex(a);
   const MeshSlot& slot = state_.slots[m];
-  const bool moved = !(where.position == mesh_.vertices[b].position);
+  const bool moved = !(where.position == mesh_.position(b));
 
   merge_.apply(a, b, m, outcome_.record);
   dropped_.clear();
@@ -351,7 +351,7 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   merge_edges(a, b);
   drop_coincident_faces(b);
 
-  mesh_.vertices[b].position = where.position;
+  mesh_.vertices[b].position = Vec3f(where.position);
   mesh_.quadrics[b] += mesh_.quadrics[a];
   if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
   if (mesh_.vertices[a].refused) mesh_.vertices[b].refused = 1;

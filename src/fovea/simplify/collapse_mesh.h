@@ -17,9 +17,10 @@ struct CollapseFace {
   std::array<std::uint32_t, 3> edge;    ///< Edge from this corner's vertex to the next corner's.
 };
 
-/// A vertex of the engine, without its quadric: no more than a look at the neighbourhood needs.
-struct CollapseVertex {
-  Vec3d position;                    ///< In units of the scene's diagonal, around the mesh's centre.
+/// A vertex of the engine, without its quadric: no more than a look at the neighbourhood needs, half a cache
+/// line.
+struct alignas(32) CollapseVertex {
+  Vec3f position;                    ///< In units of the scene's diagonal, around the mesh's centre.
   std::uint32_t ring_begin = 0;      ///< Where its ring begins in CollapseMesh::corners.
   std::uint32_t ring_size : 30 = 0;  ///< Corners in its ring; 0 without triangles.
   std::uint32_t locked : 1 = 0;      ///< Must stay where it is.
@@ -77,6 +78,7 @@ struct CollapseMesh {
     const std::uint32_t k = c % 3, n = k == 2 ? 0 : k + 1, p = k == 0 ? 2 : k - 1;
     return {face.vertex[n], face.vertex[p], face.edge[k], face.edge[p]};
   }
+  Vec3d position(std::uint32_t v) const { return Vec3d(vertices[v].position); }
   bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
   bool edge_alive(std::uint32_t e) const { return edges[e].face_count > 0; }
 

@@ -126,7 +126,7 @@ void Builder::make_connectivity() {
       CollapseFace& face = all.faces.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) face.vertex[k] = slot.first_vertex + t[k].value;
     }
-    for (const Vec3f& p : meshes_[m]->positions) all.vertices.emplace_back().position = slot.to_engine(p);
+    for (const Vec3f& p : meshes_[m]->positions) all.vertices.emplace_back().position = Vec3f(slot.to_engine(p));
   }
   all.link();
 }
@@ -319,8 +319,8 @@ void Builder::measure_faces() {
   parallel_for(context_, faces, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const auto& t = state_.mesh.faces[f].vertex;
-      const Vec3d p = state_.mesh.vertices[t[0]].position;
-      const Vec3d n = cross(state_.mesh.vertices[t[1]].position - p, state_.mesh.vertices[t[2]].position - p);
+      const Vec3d p = state_.mesh.position(t[0]);
+      const Vec3d n = cross(state_.mesh.position(t[1]) - p, state_.mesh.position(t[2]) - p);
       const double l = length(n);
       area_[f] = 0.5 * l;
       normal_[f] = l > 0 ? n / l : Vec3d{};
@@ -393,7 +393,7 @@ void Builder::add_face_quadrics() {
                  }
                  for (std::size_t v = begin; v < end; ++v) {
                    Quadric& q = mesh.quadrics[v];
-                   q.add_point(mesh.vertices[v].position,
+                   q.add_point(Vec3d(mesh.vertices[v].position),
                                kRegularization * q.weight * weight_of(static_cast<std::uint32_t>(v)));
                  }
                });
@@ -404,14 +404,14 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
                        std::vector<double>& scratch) {
   CollapseMesh& mesh = state_.mesh;
   const auto& t = mesh.faces[f].vertex;
-  const Vec3d p0 = mesh.vertices[t[0]].position;
+  const Vec3d p0 = mesh.position(t[0]);
   Quadric q;
   q.weight = area_[f] / 3;
   q.add_linear(normal_[f], -dot(normal_[f], p0), q.weight);
   if (area_[f] > 1e-16) {
     const FaceFrame frame{f, m, q.weight, p0,
-                          TriangleGradient(mesh.vertices[t[1]].position - p0,
-                                           mesh.vertices[t[2]].position - p0, normal_[f], 2 * area_[f])};
+                          TriangleGradient(mesh.position(t[1]) - p0,
+                                           mesh.position(t[2]) - p0, normal_[f], 2 * area_[f])};
     for (Channel& channel : state_.channels) {
       if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid) continue;
       switch (channel.fit_width) {
@@ -489,9 +489,9 @@ void Builder::add_edge_quadrics() {
   std::vector<std::uint32_t> first_corner(mesh.edges.size(), kInvalid);
   const auto hold = [&](std::uint32_t c, double weight) {
     const std::uint32_t v = mesh.vertex(c), w = mesh.vertex(CollapseMesh::next(c));
-    const Vec3d edge = state_.mesh.vertices[w].position - state_.mesh.vertices[v].position;
+    const Vec3d edge = state_.mesh.position(w) - state_.mesh.position(v);
     const Vec3d upright = normalized(cross(normal_[c / 3], edge));
-    const double d = -dot(upright, state_.mesh.vertices[v].position);
+    const double d = -dot(upright, state_.mesh.position(v));
     const double share = 0.5 * weight * dot(edge, edge);
     for (const std::uint32_t end : {v, w}) {
       state_.mesh.quadrics[end].add_linear(upright, d, share * weight_of(end));
@@ -523,7 +523,7 @@ void Builder::price_components() {
     for (std::uint32_t k = state_.components.first[i]; k < state_.components.first[i + 1]; ++k) {
       const std::uint32_t f = state_.components.faces[k];
       for (const std::uint32_t v : state_.mesh.faces[f].vertex) {
-        box.add(state_.mesh.vertices[v].position);
+        box.add(state_.mesh.position(v));
         weight += area_[f] / 3 * weight_of(v);
       }
     }

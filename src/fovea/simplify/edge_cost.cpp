@@ -169,7 +169,7 @@ Quadric EdgeCost::quadric(std::uint32_t a, std::uint32_t b) const {
 }
 
 std::size_t EdgeCost::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const {
-  const Vec3d pa = mesh_.vertices[a].position, pb = mesh_.vertices[b].position;
+  const Vec3d pa = mesh_.position(a), pb = mesh_.position(b);
   std::size_t count = 0;
   const auto add = [&](Vec3d p) {
     Candidate c{std::max(q.value(p), 0.0), p};
@@ -185,7 +185,7 @@ std::size_t EdgeCost::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric&
 
 Candidate EdgeCost::best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const {
   if (placement_ == Placement::optimal && !mesh_.vertices[a].locked && !mesh_.vertices[b].locked) {
-    const Vec3d pa = mesh_.vertices[a].position, pb = mesh_.vertices[b].position;
+    const Vec3d pa = mesh_.position(a), pb = mesh_.position(b);
     Candidate best;
     if (q.minimum(best.position) &&
         length_squared(best.position - (pa + pb) * 0.5) <= kReach * kReach * length_squared(pb - pa)) {

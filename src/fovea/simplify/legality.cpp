@@ -88,8 +88,8 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
 }
 
 bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
-  const Vec3d p1 = state_.mesh.vertices[face.next].position,
-              p2 = state_.mesh.vertices[face.previous].position;
+  const Vec3d p1 = state_.mesh.position(face.next),
+              p2 = state_.mesh.position(face.previous);
   const Vec3d before = cross(p1 - from, p2 - from), after = cross(p1 - to, p2 - to);
   const double before2 = length_squared(before), after2 = length_squared(after);
   // Height / longest edge = double area / longest edge².
@@ -103,7 +103,7 @@ bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
 }
 
 bool Legality::shape(Vec3d p) const {
-  const Vec3d a = state_.mesh.vertices[a_].position, b = state_.mesh.vertices[b_].position;
+  const Vec3d a = state_.mesh.position(a_), b = state_.mesh.position(b_);
   for (std::size_t i = 0; i < far_.size(); ++i) {
     if (!keeps_shape(far_[i], i < far_at_a_ ? a : b, p)) return false;
   }

@@ -7,7 +7,7 @@
 namespace fovea {
 
 void ValueMerge::plan(std::uint32_t a, std::uint32_t b, Vec3d p) {
-  const Vec3d pa = state_.mesh.vertices[a].position, edge = state_.mesh.vertices[b].position - pa;
+  const Vec3d pa = state_.mesh.position(a), edge = state_.mesh.position(b) - pa;
   const double l2 = length_squared(edge);
   along_ = l2 > 0 ? static_cast<float>(std::clamp(dot(p - pa, edge) / l2, 0.0, 1.0)) : 0.5f;
   position_ = p;
