@@ -9,7 +9,8 @@ namespace fovea {
 /// A quadratic function of a point: p ↦ pᵀ A p + 2 b·p + c, with A symmetric (Garland & Heckbert
 /// 1997). Sums of weighted squared distances to planes and points have this form. `weight` is the
 /// sum of those weights (importance aside), so that sqrt(value / weight) is a root-mean-square distance.
-struct Quadric {
+/// Aligned so that one does not lie on three cache lines.
+struct alignas(32) Quadric {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   double bx = 0, by = 0, bz = 0;
   double c = 0;
@@ -22,7 +23,10 @@ struct Quadric {
     weight += q.weight;
     return *this;
   }
-  friend Quadric operator+(Quadric a, const Quadric& b) { return a += b; }
+  friend Quadric operator+(const Quadric& a, const Quadric& b) {
+    Quadric sum = a;
+    return sum += b;
+  }
 
   /// Adds w · q; its weight is that of q, whatever w.
   void add_scaled(const Quadric& q, double w) {
