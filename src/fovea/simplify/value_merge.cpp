@@ -129,9 +129,14 @@ const float* ValueMerge::planned(std::size_t channel, std::uint32_t value) const
   return plan.values.data() + root * static_cast<std::size_t>(state_.channels[channel].width);
 }
 
-void ValueMerge::record_class(const Channel& channel, const Plan& plan, std::uint32_t root,
-                              std::uint32_t mesh, CollapseRecord& record) const {
+/// Sets the numbers of class `root`, and writes down which values it joined and the numbers if they are new.
+void ValueMerge::set_class(Channel& channel, const Plan& plan, std::uint32_t root, std::uint32_t mesh,
+                           CollapseRecord& record) const {
   const std::uint32_t first = channel.first_value[mesh], kept = plan.classes[root].kept;
+  const auto width = static_cast<std::size_t>(channel.width);
+  const float* const numbers = plan.values.data() + root * width;
+  const bool is_new = !std::equal(numbers, numbers + width, channel.value(kept));
+  std::copy_n(numbers, width, channel.value(kept));
   for (const ChannelSlice& slice : channel.slices[mesh]) {
     if (slice.layer != kInvalid) {
       plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
@@ -139,8 +144,9 @@ void ValueMerge::record_class(const Channel& channel, const Plan& plan, std::uin
           record.joins.push_back({slice.layer, ValueId{entry.value - first}, ValueId{kept - first}});
       });
     }
+    if (!is_new) continue;
     record.writes.push_back({slice.layer, kept - first});
-    const float* values = channel.value(kept) + slice.offset;
+    const float* values = numbers + slice.offset;
     record.floats.insert(record.floats.end(), values, values + slice.width);
   }
 }
@@ -162,9 +168,7 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
           for (std::size_t k = 0; k < stride; ++k) to[k] += from[k];
         });
       }
-      std::copy_n(plan.values.data() + root * static_cast<std::size_t>(channel.width), channel.width,
-                  channel.value(kept));
-      record_class(channel, plan, root, mesh, record);
+      set_class(channel, plan, root, mesh, record);
     }
     const auto relabel = [&](std::uint32_t c) {
       std::uint32_t& value = channel.corner_value[c];

@@ -35,8 +35,8 @@ class ValueMerge {
   void plan_class(const Channel& channel, Plan& plan, std::uint32_t root, std::uint32_t held);
   void fit(const Channel& channel, const Plan& plan, std::uint32_t root, float* out);
   void mix_skin(const Channel& channel, const float* at_a, const float* at_b, float* out) const;
-  void record_class(const Channel& channel, const Plan& plan, std::uint32_t root, std::uint32_t mesh,
-                    CollapseRecord& record) const;
+  void set_class(Channel& channel, const Plan& plan, std::uint32_t root, std::uint32_t mesh,
+                 CollapseRecord& record) const;
 
   CollapseState& state_;
   const Placement placement_;
