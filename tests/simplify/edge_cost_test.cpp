@@ -21,7 +21,7 @@ Quadric quadric_by_classes(const CollapseState& state, std::uint32_t a, std::uin
     classes.find(state.mesh, channel, a, b, state.mesh.edge_corners(a, b));
     for (std::uint32_t root = 0; root < classes.size(); ++root) {
       if (classes[root].root != root) continue;
-      std::vector<double> sum(attribute_stride(channel.fit_width), 0.0);
+      std::vector<float> sum(attribute_stride(channel.fit_width), 0.0f);
       classes.for_class(root, [&](const ValueClasses::Entry& entry) {
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += channel.value_quadric(entry.value)[i];
       });

@@ -141,6 +141,25 @@ TEST(AttributeQuadric, HeldIsTheErrorOfThatValue) {
   }
 }
 
+TEST(AttributeQuadric, InFloatsLosesAFewHundredThousandths) {
+  // Values of a few hundredths and small triangles far from the origin, as in the engine.
+  Random random(6);
+  for (int trial = 0; trial < 20; ++trial) {
+    auto triangles = random_triangles(random, 6);
+    for (auto& t : triangles) {
+      for (Vec3d& p : t.p) p = p * 0.01 + Vec3d{0.3, -0.4, 0.2};
+      for (double& s : t.s) s = 0.03 + 1e-4 * s;
+    }
+    std::vector<double> value;
+    Quadric exact = attribute_quadric(triangles, value), rounded = exact;
+    const std::vector<float> floats(value.begin(), value.end());
+    reduce(exact, value.data(), 1);
+    reduce(rounded, floats.data(), 1);
+    const Vec3d p = triangles[0].p[0];
+    EXPECT_LT(std::sqrt(std::abs(exact.value(p) - rounded.value(p)) / value[4]), 3e-5);
+  }
+}
+
 TEST(AttributeQuadric, IsNotFittedWithoutWeight) {
   Quadric q;
   q.add_point({0, 0, 0}, 1);

@@ -197,7 +197,7 @@ void Engine::take_batch() {
     for (const std::uint32_t v : mesh_.edges[due.item].ends) {
       for (const Channel& channel : state_.channels) {
         if (channel.kind != ChannelKind::fitted || channel.single[v] >= Channel::kMany) continue;
-        const double* const quadric = channel.value_quadric(channel.single[v]);
+        const float* const quadric = channel.value_quadric(channel.single[v]);
         prefetch(quadric);
         prefetch(quadric + attribute_stride(channel.fit_width) - 1);
       }
@@ -356,6 +356,7 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
   if (mesh_.vertices[a].refused) mesh_.vertices[b].refused = 1;
   retire_values(a, b);
+  cost_.forget(a);
   look_at_values(b);
   revive_edges(b);
   changed_.push_back(b);
@@ -463,7 +464,7 @@ void Engine::retire_values(std::uint32_t a, std::uint32_t b) {
                       [&](std::uint32_t d) { return channel.corner_value[d] == value; }))
         continue;
       mesh_.quadrics[v] += cost_.separate(channel, v, value);
-      std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0);
+      std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0f);
       retired = true;
     }
     if (retired && v != b) look_at_values(v);

@@ -376,7 +376,7 @@ void Builder::add_face_quadrics() {
   for (Channel& channel : state_.channels) {
     if (channel.kind != ChannelKind::fitted) continue;
     const std::size_t count = channel.values.size() / static_cast<std::size_t>(channel.width);
-    channel.quadric.assign(count * attribute_stride(channel.fit_width), 0.0);
+    channel.quadric.assign(count * attribute_stride(channel.fit_width), 0.0f);
   }
   constexpr int kMostRanges = 8;
   const auto ranges = static_cast<std::size_t>(std::min(context_.thread_count(), kMostRanges));
@@ -459,8 +459,8 @@ void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t b
     const std::uint32_t v = state_.mesh.vertex(c);
     if (v < begin || v >= end) continue;
     const double weight = weight_of(v);
-    double* const value = channel.value_quadric(channel.corner_value[c]);
-    for (std::size_t i = 0; i < stride; ++i) value[i] += weight * slopes[i];
+    float* const value = channel.value_quadric(channel.corner_value[c]);
+    for (std::size_t i = 0; i < stride; ++i) value[i] += static_cast<float>(weight * slopes[i]);
   }
 }
 

@@ -43,7 +43,7 @@ struct Channel {
   std::vector<std::uint32_t> corner_value;        ///< [#F × 3] or kInvalid.
   std::vector<std::uint32_t> single;              ///< [#V]: the vertex's only value, kMany or kInvalid.
   std::vector<float> values;                      ///< [#values × width], in the layer's units.
-  std::vector<double> quadric;                    ///< [#values × attribute_stride(fit_width)] if fitted.
+  std::vector<float> quadric;                     ///< [#values × attribute_stride(fit_width)] if fitted.
   std::vector<std::vector<ChannelSlice>> slices;  ///< [#meshes]; empty where the mesh lacks it.
   std::vector<std::uint32_t> first_value;         ///< [#meshes]
   std::vector<double> scale;  ///< [#meshes], from the layer's units to lengths of the engine.
@@ -51,8 +51,8 @@ struct Channel {
   static constexpr std::uint32_t kMany = kInvalid - 1;
   float* value(std::uint32_t id) { return values.data() + id * static_cast<std::size_t>(width); }
   const float* value(std::uint32_t id) const { return values.data() + id * static_cast<std::size_t>(width); }
-  double* value_quadric(std::uint32_t id) { return quadric.data() + id * attribute_stride(fit_width); }
-  const double* value_quadric(std::uint32_t id) const {
+  float* value_quadric(std::uint32_t id) { return quadric.data() + id * attribute_stride(fit_width); }
+  const float* value_quadric(std::uint32_t id) const {
     return quadric.data() + id * attribute_stride(fit_width);
   }
   bool is_uv() const { return semantic == Semantic::uv; }

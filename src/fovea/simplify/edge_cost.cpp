@@ -18,7 +18,7 @@ template <int kWidth>
 class AttributeSum {
  public:
   explicit AttributeSum(int width) : stride_(attribute_stride(width)) {}
-  void add(const double* q) {
+  void add(const float* q) {
     const std::size_t stride = kWidth > 0 ? attribute_stride(kWidth) : stride_;
     if (sum_ == nullptr) {
       sum_ = q;  // most often nothing else comes, or one more
@@ -28,16 +28,16 @@ class AttributeSum {
     for (std::size_t i = 0; i < stride; ++i) total_[i] = sum_[i] + q[i];
     sum_ = total_.data();
   }
-  const double* get() const { return sum_; }
+  const float* get() const { return sum_; }
 
  private:
   std::size_t stride_;
-  const double* sum_ = nullptr;
-  std::conditional_t<kWidth == 0, std::vector<double>, std::array<double, attribute_stride(kWidth)>> total_;
+  const float* sum_ = nullptr;
+  std::conditional_t<kWidth == 0, std::vector<float>, std::array<float, attribute_stride(kWidth)>> total_;
 };
 
 /// Adds the error of an attribute quadric whose texture coordinates stay those of `value`.
-void hold_at(Quadric& q, const Channel& channel, const double* attribute, std::uint32_t value,
+void hold_at(Quadric& q, const Channel& channel, const float* attribute, std::uint32_t value,
              std::uint32_t mesh, double times = 1) {
   const double scale = channel.scale[mesh];
   const float* numbers = channel.value(value);
@@ -49,7 +49,7 @@ void hold_at(Quadric& q, const Channel& channel, const double* attribute, std::u
 /// becomes the best for the position. With `times` −1 it takes that back.
 void settle_alone(Quadric& q, const Channel& channel, int width, std::uint32_t value, std::uint32_t mesh,
                   double times = 1) {
-  const double* const attribute = channel.value_quadric(value);
+  const float* const attribute = channel.value_quadric(value);
   if (channel.is_uv()) {
     hold_at(q, channel, attribute, value, mesh, times);
   } else {
@@ -61,6 +61,13 @@ void settle_alone(Quadric& q, const Channel& channel, int width, std::uint32_t v
 
 EdgeCost::EdgeCost(const CollapseState& state, Placement placement)
     : state_(state), mesh_(state.mesh), placement_(placement), slot_(mesh_.vertices.size(), kInvalid) {
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < slot_.size(); ++v) {
+    count += std::any_of(state.channels.begin(), state.channels.end(), [&](const Channel& channel) {
+      return channel.kind == ChannelKind::fitted && channel.single[v] == Channel::kMany;
+    });
+  }
+  separate_.reserve(count);
   for (std::uint32_t v = 0; v < slot_.size(); ++v) refresh(v);
 }
 
@@ -80,14 +87,23 @@ void EdgeCost::refresh(std::uint32_t v) {
       settle_alone(sum, channel, channel.fit_width, value, state_.slot_of_vertex(v));
   }
   if (!many) {
-    slot_[v] = kInvalid;
+    forget(v);
     return;
   }
   if (slot_[v] == kInvalid) {
-    slot_[v] = static_cast<std::uint32_t>(separate_.size());
-    separate_.emplace_back();
+    if (free_slots_.empty()) {
+      free_slots_.push_back(static_cast<std::uint32_t>(separate_.size()));
+      separate_.emplace_back();
+    }
+    slot_[v] = free_slots_.back();
+    free_slots_.pop_back();
   }
   separate_[slot_[v]] = sum;
+}
+
+void EdgeCost::forget(std::uint32_t v) {
+  if (slot_[v] != kInvalid) free_slots_.push_back(slot_[v]);
+  slot_[v] = kInvalid;
 }
 
 Quadric EdgeCost::separate(const Channel& channel, std::uint32_t v, std::uint32_t value) const {

@@ -27,6 +27,8 @@ class EdgeCost {
 
   /// To be called when the values or triangles at v have changed.
   void refresh(std::uint32_t v);
+  /// To be called when v has no triangles any more.
+  void forget(std::uint32_t v);
   /// Whether v has several values of some fitted attribute, or had when it was last looked at.
   bool has_many(std::uint32_t v) const { return slot_[v] != kInvalid; }
   /// What a value of v makes up for by itself: texture coordinates at a seam stay as they are, everything
@@ -54,6 +56,7 @@ class EdgeCost {
   const Placement placement_;
   std::vector<std::uint32_t> slot_;    // [#V] into `separate_`, kInvalid without a channel of many values
   std::vector<Quadric> separate_;      // what such a vertex's values make up for by themselves
+  std::vector<std::uint32_t> free_slots_;
   std::vector<std::uint32_t> values_;  // scratch of refresh()
 };
 

@@ -79,27 +79,31 @@ struct alignas(32) Quadric {
 /// The first term goes into the vertex's Quadric. Minimised over s (s = (G·p + D) / W) the rest is
 /// −(G·p + D)² / W.
 ///
-/// In memory: `width` times (G, D), then W; see `attribute_stride`.
+/// In memory: `width` times (G, D), then W; see `attribute_stride`. The engine keeps floats: attributes are
+/// scaled to a few hundredths of the diagonal at most (collapse_state.cpp), so that what they lose is a
+/// few hundred-thousandths of it, as a distance.
 constexpr std::size_t attribute_stride(int width) { return 4 * static_cast<std::size_t>(width) + 1; }
 
 /// Subtracts Σ_k (G_k·p + D_k)² / W from q: the value of each component is the best for p. With
 /// `times` −1 it takes that back.
-inline void reduce(Quadric& q, const double* attribute, int width, double times = 1) {
-  const double weight = attribute[4 * width];
+template <class T>
+void reduce(Quadric& q, const T* attribute, int width, double times = 1) {
+  const double weight = static_cast<double>(attribute[4 * width]);
   if (!(weight > 0)) return;
   const double factor = -times / weight;
   for (int k = 0; k < width; ++k) {
-    const double* g = attribute + 4 * k;
+    const T* g = attribute + 4 * k;
     q.add_linear({g[0], g[1], g[2]}, g[3], factor);
   }
 }
 
 /// Adds Σ_k −2 s_k (G_k·p + D_k) + W s_k²: the value of each component stays s_k wherever p is. With
 /// `times` −1 it takes that back.
-inline void hold(Quadric& q, const double* attribute, int width, const double* s, double times = 1) {
-  const double weight = attribute[4 * width];
+template <class T>
+void hold(Quadric& q, const T* attribute, int width, const double* s, double times = 1) {
+  const double weight = static_cast<double>(attribute[4 * width]);
   for (int k = 0; k < width; ++k) {
-    const double* g = attribute + 4 * k;
+    const T* g = attribute + 4 * k;
     const double t = times * s[k];
     q.bx -= t * g[0], q.by -= t * g[1], q.bz -= t * g[2];
     q.c += t * (weight * s[k] - 2 * g[3]);
@@ -107,8 +111,9 @@ inline void hold(Quadric& q, const double* attribute, int width, const double* s
 }
 
 /// The best value of component k at p.
-inline double fitted_value(const double* attribute, int width, int k, Vec3d p) {
-  const double* g = attribute + 4 * k;
+template <class T>
+double fitted_value(const T* attribute, int width, int k, Vec3d p) {
+  const T* g = attribute + 4 * k;
   return (g[0] * p.x + g[1] * p.y + g[2] * p.z + g[3]) / attribute[4 * width];
 }
 

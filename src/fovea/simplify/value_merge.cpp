@@ -58,9 +58,9 @@ void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t ro
 void ValueMerge::fit(const Channel& channel, const Plan& plan, std::uint32_t root, float* out) {
   const double scale = channel.scale[slot_];
   const std::size_t stride = attribute_stride(channel.fit_width);
-  sum_.assign(stride, 0.0);
+  sum_.assign(stride, 0.0f);
   plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
-    const double* q = channel.value_quadric(entry.value);
+    const float* q = channel.value_quadric(entry.value);
     for (std::size_t k = 0; k < stride; ++k) sum_[k] += q[k];
   });
   if (!(sum_[stride - 1] > 0) || !(scale > 0)) return;
@@ -161,10 +161,10 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
       if (plan.classes[root].root != root) continue;
       const std::uint32_t kept = plan.classes[root].kept;
       if (!channel.quadric.empty()) {
-        double* to = channel.value_quadric(kept);
+        float* to = channel.value_quadric(kept);
         plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
           if (entry.value == kept) return;
-          const double* from = channel.value_quadric(entry.value);
+          const float* from = channel.value_quadric(entry.value);
           for (std::size_t k = 0; k < stride; ++k) to[k] += from[k];
         });
       }

@@ -41,7 +41,7 @@ class ValueMerge {
   CollapseState& state_;
   const Placement placement_;
   std::vector<Plan> plans_;  // [#channels]
-  std::vector<double> sum_;
+  std::vector<float> sum_;
   // Of the present plan:
   Vec3d position_;
   std::uint32_t slot_ = 0;
