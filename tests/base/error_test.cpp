@@ -27,7 +27,7 @@ TEST(Error, WhatIsTheMessageWithoutAPlace) {
 
 TEST(Error, WithinPutsTheFileBeforeThePlace) {
   const Error e = Error(ErrorKind::limit, "too large", "/images/1", "raise it").within("a.glb");
-  EXPECT_STREQ(e.what(), "a.glb/images/1: too large");
+  EXPECT_STREQ(e.what(), "a.glb: /images/1: too large");
   EXPECT_EQ(e.kind(), ErrorKind::limit);
   EXPECT_EQ(e.hint(), "raise it");
   EXPECT_EQ(Error(ErrorKind::limit, "too large").within("a.glb").place(), "a.glb");

@@ -88,8 +88,8 @@ TEST(FieldFile, Text) {
   const auto read = [&](const std::string& text) { return read_field(folder.add("a.csv", text)); };
   EXPECT_EQ(read("1\n2.5\n\n# remark\n-3e1"), (std::vector<float>{1, 2.5f, -30}));
   EXPECT_EQ(read("vertex,weight\r\n0, 0.5\r\n1, 0.25,\r\n"), (std::vector<float>{0.5f, 0.25f}));
-  expect_error([&] { read("1\n2\nthree\n"); }, ErrorKind::format, "a.csv:line 3");
-  expect_error([&] { read("1\n2x\n"); }, ErrorKind::format, "a.csv:line 2");
+  expect_error([&] { read("1\n2\nthree\n"); }, ErrorKind::format, "a.csv: line 3");
+  expect_error([&] { read("1\n2x\n"); }, ErrorKind::format, "a.csv: line 2");
 }
 
 /// Two triangles of three source vertices each with one edge in common, and a vertex that nothing uses.

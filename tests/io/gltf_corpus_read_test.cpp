@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// What must be refused, and where it must say so.
 const std::map<std::string, std::string> kMalformed = {
-    {"bufferview-past-end.glb", "bufferview-past-end.glb/bufferViews/0"},
-    {"index-out-of-range.glb", "index-out-of-range.glb/meshes/0/primitives/0/indices"},
-    {"truncated.glb", "truncated.glb byte 8"}};
+    {"bufferview-past-end.glb", "bufferview-past-end.glb: /bufferViews/0"},
+    {"index-out-of-range.glb", "index-out-of-range.glb: /meshes/0/primitives/0/indices"},
+    {"truncated.glb", "truncated.glb: byte 8"}};
 
 class GltfCorpus : public ::testing::Test {
  protected:

@@ -244,7 +244,8 @@ TEST(GltfHostile, EveryDamageIsNamedByItsPlace) {
       EXPECT_EQ(damage.kind, ErrorKind::internal) << what << " was read";
     } catch (const Error& e) {
       EXPECT_STREQ(to_string(e.kind()), to_string(damage.kind)) << what;
-      EXPECT_EQ(e.place(), std::string(kPlace) + damage.place) << what << ": " << e.message();
+      EXPECT_EQ(e.place(), damage.place[0] == '\0' ? kPlace : kPlace + std::string(": ") + damage.place)
+          << what << ": " << e.message();
       EXPECT_EQ(e.message().find('\n'), std::string::npos) << what;
     }
   }
@@ -307,7 +308,7 @@ TEST(GltfHostile, PositionsAndIndicesAreNamedByNumber) {
     read(builder.glb());
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.place(), "bad.glb/meshes/0/primitives/0/attributes/POSITION");
+    EXPECT_EQ(e.place(), "bad.glb: /meshes/0/primitives/0/attributes/POSITION");
     EXPECT_NE(e.message().find("vertex 1"), std::string::npos) << e.message();
   }
   builder = GltfBuilder::triangle();
@@ -316,7 +317,7 @@ TEST(GltfHostile, PositionsAndIndicesAreNamedByNumber) {
     read(builder.glb());
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.place(), "bad.glb/meshes/0/primitives/0/indices");
+    EXPECT_EQ(e.place(), "bad.glb: /meshes/0/primitives/0/indices");
     EXPECT_EQ(e.message(), "index 2 is 3 but there are 3 vertices");
   }
 }
@@ -428,7 +429,7 @@ TEST(GltfHostile, ElementLimitIsAnOption) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::limit);
-    EXPECT_EQ(e.place(), "bad.glb/accessors/0/count");
+    EXPECT_EQ(e.place(), "bad.glb: /accessors/0/count");
   }
 }
 

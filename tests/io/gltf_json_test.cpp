@@ -39,7 +39,7 @@ TEST(GltfJson, SyntaxErrorsNameTheByteInTheFile) {
   // Offset 20 of the text in the file, and the "x" is its sixth character.
   const Error e = error_of([] { parse(R"({"a":x})"); });
   EXPECT_EQ(e.kind(), ErrorKind::format);
-  EXPECT_EQ(e.place(), "f.gltf byte 25");
+  EXPECT_EQ(e.place(), "f.gltf: byte 25");
   for (const char* text :
        {"", "{", "[1,]", "{\"a\" 1}", "\"\xff\"", "nul", "{\"a\":1}}", "1e999", "\"\\ud800\""}) {
     EXPECT_EQ(error_of([&] { parse(text); }).kind(), ErrorKind::format) << text;
@@ -72,22 +72,22 @@ TEST(GltfJson, ViewsCheckTypesAndNameThePlace) {
   EXPECT_EQ(view.at("n").integer(0, 10), 5);
   EXPECT_EQ(view.number("missing", 2.5), 2.5);
   EXPECT_EQ(view.index("missing", 3, "things"), -1);
-  EXPECT_EQ(view.at("a/b~c").place(), "f.gltf/a~1b~0c");
+  EXPECT_EQ(view.at("a/b~c").place(), "f.gltf: /a~1b~0c");
   struct Case {
     std::function<void()> call;
     const char* place;
   };
-  const Case cases[] = {{[&] { view.at("f").integer(0, 10); }, "f.gltf/f"},
-                        {[&] { view.at("n").integer(0, 4); }, "f.gltf/n"},
-                        {[&] { view.at("big").size(); }, "f.gltf/big"},
-                        {[&] { view.at("neg").size(); }, "f.gltf/neg"},
-                        {[&] { view.at("s").number(); }, "f.gltf/s"},
-                        {[&] { view.at("n").text(); }, "f.gltf/n"},
-                        {[&] { view.at("n").elements(); }, "f.gltf/n"},
-                        {[&] { view.at("n").find("x"); }, "f.gltf/n"},
-                        {[&] { view.at("n").boolean(); }, "f.gltf/n"},
-                        {[&] { view.at("list").numbers(); }, "f.gltf/list"},
-                        {[&] { view.at("a/b~c").index("i", 7, "things"); }, "f.gltf/a~1b~0c/i"},
+  const Case cases[] = {{[&] { view.at("f").integer(0, 10); }, "f.gltf: /f"},
+                        {[&] { view.at("n").integer(0, 4); }, "f.gltf: /n"},
+                        {[&] { view.at("big").size(); }, "f.gltf: /big"},
+                        {[&] { view.at("neg").size(); }, "f.gltf: /neg"},
+                        {[&] { view.at("s").number(); }, "f.gltf: /s"},
+                        {[&] { view.at("n").text(); }, "f.gltf: /n"},
+                        {[&] { view.at("n").elements(); }, "f.gltf: /n"},
+                        {[&] { view.at("n").find("x"); }, "f.gltf: /n"},
+                        {[&] { view.at("n").boolean(); }, "f.gltf: /n"},
+                        {[&] { view.at("list").numbers(); }, "f.gltf: /list"},
+                        {[&] { view.at("a/b~c").index("i", 7, "things"); }, "f.gltf: /a~1b~0c/i"},
                         {[&] { view.at("nothing"); }, "f.gltf"}};
   for (const Case& c : cases) {
     const Error e = error_of(c.call);
@@ -171,12 +171,12 @@ TEST(Glb, LengthsThatContradictTheFileNameTheByte) {
     file[offset] = std::byte{value};
     return error_of([&] { split_glb(file, "f.glb"); }).place();
   };
-  EXPECT_EQ(place_with(4, 1), "f.glb byte 4");      // version
-  EXPECT_EQ(place_with(8, 255), "f.glb byte 8");    // length of the file
-  EXPECT_EQ(place_with(8, 5), "f.glb byte 8");      // less than the header
-  EXPECT_EQ(place_with(15, 255), "f.glb byte 12");  // length of the first chunk
-  EXPECT_EQ(place_with(16, 'X'), "f.glb byte 16");  // its type
-  EXPECT_EQ(place_with(27, 255), "f.glb byte 24");  // length of the second chunk
+  EXPECT_EQ(place_with(4, 1), "f.glb: byte 4");      // version
+  EXPECT_EQ(place_with(8, 255), "f.glb: byte 8");    // length of the file
+  EXPECT_EQ(place_with(8, 5), "f.glb: byte 8");      // less than the header
+  EXPECT_EQ(place_with(15, 255), "f.glb: byte 12");  // length of the first chunk
+  EXPECT_EQ(place_with(16, 'X'), "f.glb: byte 16");  // its type
+  EXPECT_EQ(place_with(27, 255), "f.glb: byte 24");  // length of the second chunk
   for (std::size_t length = 4; length < good.size(); ++length) {
     const auto cut = std::span(good).first(length);
     EXPECT_EQ(error_of([&] { split_glb(cut, "f.glb"); }).kind(), ErrorKind::format) << length;

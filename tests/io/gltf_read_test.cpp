@@ -267,7 +267,7 @@ TEST(GltfRead, NumbersThatAreNotFiniteBecomeZeroExceptInPositions) {
   ASSERT_EQ(context.diagnostics().size(), 1u);
   EXPECT_EQ(context.diagnostics()[0].code, "non-finite-values");
   EXPECT_EQ(context.diagnostics()[0].count, 2u);
-  EXPECT_EQ(context.diagnostics()[0].place, "test.glb/meshes/0/primitives/0/attributes/NORMAL");
+  EXPECT_EQ(context.diagnostics()[0].place, "test.glb: /meshes/0/primitives/0/attributes/NORMAL");
   for (const float x : model.meshes[0].surface.layers[0].values) EXPECT_TRUE(std::isfinite(x));
 }
 
@@ -501,7 +501,7 @@ TEST(GltfRead, RequiredExtensionIsRefusedOnlyIfItTouchesGeometry) {
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::unsupported);
     EXPECT_NE(e.message().find("NEW_thing"), std::string::npos);
-    EXPECT_EQ(e.place(), "test.glb/accessors/0/extensions/NEW_thing");
+    EXPECT_EQ(e.place(), "test.glb: /accessors/0/extensions/NEW_thing");
   }
 }
 

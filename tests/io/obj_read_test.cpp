@@ -243,18 +243,19 @@ TEST(ObjRead, PointsAndLinesAreDroppedAndTold) {
 }
 
 TEST(ObjRead, ErrorsTellTheLine) {
-  expect_refused(std::string(kTriangle) + "f 0 1 2\n", "test.obj:line 4", "count from 1");
-  expect_refused(std::string(kTriangle) + "f 1 2 4\nf 1 2 3\n", "test.obj:line 4",
+  expect_refused(std::string(kTriangle) + "f 0 1 2\n", "test.obj: line 4", "count from 1");
+  expect_refused(std::string(kTriangle) + "f 1 2 4\nf 1 2 3\n", "test.obj: line 4",
                  "vertex index 4 but there are 3");
-  expect_refused(std::string(kTriangle) + "f 1 2 -4\n", "test.obj:line 4");
-  expect_refused(std::string(kTriangle) + "vt 0 0\nf 1/1 2/2 3/1\n", "test.obj:line 5", "texture coordinate");
-  expect_refused(std::string(kTriangle) + "f 1 2 3x\n", "test.obj:line 4");
-  expect_refused(std::string(kTriangle) + "f 1 2 99999999999999999999\n", "test.obj:line 4");
-  expect_refused(std::string(kTriangle) + "f 1 2 4294967295\n", "test.obj:line 4");
-  expect_refused("v 0 0\nf 1 1 1\n", "test.obj:line 1", "three numbers");
-  expect_refused("v 0 0 nan\n", "test.obj:line 1", "finite");
-  expect_refused("v 0 0 1e99\n", "test.obj:line 1", "finite");
-  expect_refused("v 0 \\\n 0 zero\n", "test.obj:line 2");
+  expect_refused(std::string(kTriangle) + "f 1 2 -4\n", "test.obj: line 4");
+  expect_refused(std::string(kTriangle) + "vt 0 0\nf 1/1 2/2 3/1\n", "test.obj: line 5",
+                 "texture coordinate");
+  expect_refused(std::string(kTriangle) + "f 1 2 3x\n", "test.obj: line 4");
+  expect_refused(std::string(kTriangle) + "f 1 2 99999999999999999999\n", "test.obj: line 4");
+  expect_refused(std::string(kTriangle) + "f 1 2 4294967295\n", "test.obj: line 4");
+  expect_refused("v 0 0\nf 1 1 1\n", "test.obj: line 1", "three numbers");
+  expect_refused("v 0 0 nan\n", "test.obj: line 1", "finite");
+  expect_refused("v 0 0 1e99\n", "test.obj: line 1", "finite");
+  expect_refused("v 0 \\\n 0 zero\n", "test.obj: line 2");
 }
 
 TEST(ObjRead, FilesWithoutFacesAreUnsupported) {

@@ -40,12 +40,12 @@ TEST(OffRead, ColoursAndNormals) {
 }
 
 TEST(OffRead, DamagedFilesAreRefusedWithThePlace) {
-  expect_refused("OFF\n", ErrorKind::format, "test.off:line 2");
-  expect_refused("OFF\n4000000000 1 0\n0 0 0\n", ErrorKind::format, "test.off:line 3");
-  expect_refused("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ErrorKind::format, "test.off:line 6");
+  expect_refused("OFF\n", ErrorKind::format, "test.off: line 2");
+  expect_refused("OFF\n4000000000 1 0\n0 0 0\n", ErrorKind::format, "test.off: line 3");
+  expect_refused("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ErrorKind::format, "test.off: line 6");
   expect_refused("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999999999 0 1 2\n", ErrorKind::format,
-                 "test.off:line 6");
-  expect_refused("OFF\n3 1 0\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n", ErrorKind::format, "test.off:line 4");
+                 "test.off: line 6");
+  expect_refused("OFF\n3 1 0\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n", ErrorKind::format, "test.off: line 4");
   expect_refused("OFF BINARY\n", ErrorKind::unsupported, "test.off");
   expect_refused("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", ErrorKind::unsupported, "test.off");
 }

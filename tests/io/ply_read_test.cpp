@@ -169,22 +169,23 @@ TEST(PlyRead, PointCloudsAreUnsupported) {
 }
 
 TEST(PlyRead, DamagedFilesAreRefusedWithThePlace) {
-  expect_refused("ply\nformat ascii 1.0\n", ErrorKind::format, "test.ply:line 3", "no end");
+  expect_refused("ply\nformat ascii 1.0\n", ErrorKind::format, "test.ply: line 3", "no end");
   expect_refused("ply\nend_header\n", ErrorKind::format, "test.ply", "no format");
-  expect_refused("ply\nformat morse 1.0\nend_header\n", ErrorKind::format, "test.ply:line 2");
-  expect_refused("ply\nformat ascii 1.0\nelement vertex\nend_header\n", ErrorKind::format, "test.ply:line 3");
+  expect_refused("ply\nformat morse 1.0\nend_header\n", ErrorKind::format, "test.ply: line 2");
+  expect_refused("ply\nformat ascii 1.0\nelement vertex\nend_header\n", ErrorKind::format,
+                 "test.ply: line 3");
   expect_refused("ply\nformat ascii 1.0\nproperty float x\nend_header\n", ErrorKind::format,
-                 "test.ply:line 3");
+                 "test.ply: line 3");
   expect_refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n", ErrorKind::format,
-                 "test.ply:line 4");
+                 "test.ply: line 4");
   expect_refused(ascii("property float x\nproperty float y\n", 3, "0 0\n0 0\n0 0\n"), ErrorKind::format,
                  "test.ply", "x, y, z");
-  expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 3\n"), ErrorKind::format, "test.ply:line 13",
+  expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 3\n"), ErrorKind::format, "test.ply: line 13",
                  "index 3");
-  expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 -1\n"), ErrorKind::format, "test.ply:line 13");
+  expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 -1\n"), ErrorKind::format, "test.ply: line 13");
   expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1"), ErrorKind::format, "test.ply",
                  "longer than the file");
-  expect_refused(ascii(kXyz, 3, "0 0 0\n1 0 here\n0 1 0\n"), ErrorKind::format, "test.ply:line 11",
+  expect_refused(ascii(kXyz, 3, "0 0 0\n1 0 here\n0 1 0\n"), ErrorKind::format, "test.ply: line 11",
                  "not a number");
   expect_refused(ascii(kXyz, 3, "0 0 0\n1 0 inf\n0 1 0\n"), ErrorKind::format, "test.ply", "finite");
 }
@@ -193,14 +194,14 @@ TEST(PlyRead, CountsBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
   const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex ";
   const std::string rest = "\n" + kXyz + "end_header\nabc";
   for (const char* count : {"2", "1000000000000", "4294967296", "18446744073709551615"}) {
-    expect_refused(head + count + rest, ErrorKind::format, "test.ply:header", "bytes follow");
+    expect_refused(head + count + rest, ErrorKind::format, "test.ply: header", "bytes follow");
   }
-  expect_refused(head + "99999999999999999999999" + rest, ErrorKind::format, "test.ply:line 3");
+  expect_refused(head + "99999999999999999999999" + rest, ErrorKind::format, "test.ply: line 3");
   // A list of 4294967295 numbers in a file of some bytes.
   expect_refused("ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + kXyz +
                      "element face 1\nproperty list uint double vertex_indices\nend_header\n" +
                      std::string(12, '\0') + "\xFF\xFF\xFF\xFF",
-                 ErrorKind::format, "test.ply:byte", "longer than the file");
+                 ErrorKind::format, "test.ply: byte", "longer than the file");
   // An element without properties takes no bytes: any count is harmless, and must not be counted out.
   std::string empty = ascii(kXyz, 3, kTriangleRows);
   empty.insert(empty.find("element face"), "element nothing 18446744073709551615\n");

@@ -12,7 +12,7 @@ Error::Error(ErrorKind kind, std::string message, std::string place, std::string
       hint_(std::move(hint)) {}
 
 Error Error::within(const std::string& outer) const {
-  return Error(kind_, message_, place_.empty() ? outer : outer + place_, hint_);
+  return Error(kind_, message_, place_.empty() ? outer : outer + ": " + place_, hint_);
 }
 
 int exit_code(ErrorKind kind) {

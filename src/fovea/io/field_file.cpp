@@ -36,17 +36,17 @@ struct NpyHeader {
 };
 
 NpyHeader find_header(std::span<const std::byte> bytes, const std::string& place) {
-  if (!is_npy(bytes)) throw Error(ErrorKind::format, "this is no .npy file", place + ":byte 0");
+  if (!is_npy(bytes)) throw Error(ErrorKind::format, "this is no .npy file", place + ": byte 0");
   const int version = bytes.size() > 6 ? std::to_integer<int>(bytes[6]) : 0;
   if (version < 1 || version > 3) {
     throw Error(ErrorKind::unsupported, fmt::format(".npy version {} is not known", version),
-                place + ":byte 6");
+                place + ": byte 6");
   }
   const std::size_t width = version == 1 ? 2 : 4, begin = 8 + width;
   std::uint64_t length = 0;
   if (bytes.size() >= begin) std::memcpy(&length, bytes.data() + 8, width);
   if (bytes.size() < begin || length > bytes.size() - begin) {
-    throw Error(ErrorKind::format, "the header is longer than the file", place + ":byte 8");
+    throw Error(ErrorKind::format, "the header is longer than the file", place + ": byte 8");
   }
   return {as_text(bytes).substr(begin, length), begin + static_cast<std::size_t>(length)};
 }
@@ -62,14 +62,14 @@ std::string_view value_of(std::string_view header, std::string_view key, const s
     const std::size_t value = header.find_first_not_of(' ', colon + 1);
     if (value != header.npos) return header.substr(value);
   }
-  throw Error(ErrorKind::format, fmt::format("the header has no \"{}\"", key), place + ":header");
+  throw Error(ErrorKind::format, fmt::format("the header has no \"{}\"", key), place + ": header");
 }
 
 std::string read_type(std::string_view header, const std::string& place) {
   const std::string_view value = value_of(header, "descr", place);
   const std::size_t end = value.size() > 1 ? value.find(value[0], 1) : value.npos;
   if ((value[0] != '\'' && value[0] != '"') || end == value.npos) {
-    throw Error(ErrorKind::unsupported, "the elements are records, not numbers", place + ":header");
+    throw Error(ErrorKind::unsupported, "the elements are records, not numbers", place + ": header");
   }
   return std::string(value.substr(1, end - 1));
 }
@@ -79,7 +79,7 @@ std::uint64_t read_count(std::string_view header, const std::string& place) {
   const std::string_view value = value_of(header, "shape", place);
   const std::size_t end = value.find(')');
   if (value[0] != '(' || end == value.npos)
-    throw Error(ErrorKind::format, "the shape is damaged", place + ":header");
+    throw Error(ErrorKind::format, "the shape is damaged", place + ": header");
   std::uint64_t count = 1;
   int long_sides = 0;
   for (const char *at = value.data() + 1, *stop = value.data() + end; at != stop;) {
@@ -89,7 +89,7 @@ std::uint64_t read_count(std::string_view header, const std::string& place) {
     }
     std::uint64_t side = 0;
     const auto [next, error] = std::from_chars(at, stop, side);
-    if (error != std::errc()) throw Error(ErrorKind::format, "the shape is damaged", place + ":header");
+    if (error != std::errc()) throw Error(ErrorKind::format, "the shape is damaged", place + ": header");
     at = next;
     if (side == 1) continue;
     count = side;
@@ -98,7 +98,7 @@ std::uint64_t read_count(std::string_view header, const std::string& place) {
   if (long_sides > 1) {
     throw Error(ErrorKind::unsupported,
                 fmt::format("the array has shape {}, not that of a list", value.substr(0, end + 1)),
-                place + ":header", "save one number per vertex");
+                place + ": header", "save one number per vertex");
   }
   return count;
 }
@@ -131,7 +131,7 @@ const NpyType& find_type(const std::string& name, const std::string& place) {
     if (!big_endian && name.size() == 3 && name.substr(1) == type.name) return type;
   }
   throw Error(ErrorKind::unsupported, fmt::format("numbers of type \"{}\" are not known", name.substr(0, 32)),
-              place + ":header", "save little-endian floats or integers");
+              place + ": header", "save little-endian floats or integers");
 }
 
 std::string_view last_column(std::string_view line) {
@@ -153,7 +153,7 @@ std::vector<float> parse_text(std::span<const std::byte> bytes, const std::strin
     float value = 0;
     const bool good = number.number(value) && number.at_end();
     if (!good && !first)
-      throw Error(ErrorKind::format, "this is not a number", fmt::format("{}:line {}", place, line));
+      throw Error(ErrorKind::format, "this is not a number", fmt::format("{}: line {}", place, line));
     if (good) values.push_back(value);
     first = false;
   }
@@ -255,7 +255,7 @@ std::vector<float> parse_npy(std::span<const std::byte> bytes, const std::string
     throw Error(ErrorKind::format,
                 fmt::format("{} numbers of {} bytes do not fit the {} bytes that follow", count, type.size,
                             data.size()),
-                fmt::format("{}:byte {}", place, header.data));
+                fmt::format("{}: byte {}", place, header.data));
   }
   return type.convert(data, count);
 }

@@ -24,7 +24,7 @@ std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t offset) {
 
 [[noreturn]] void fail(const std::string& message, const std::string& place, std::size_t offset,
                        ErrorKind kind = ErrorKind::format) {
-  throw Error(kind, message, fmt::format("{} byte {}", place, offset));
+  throw Error(kind, message, fmt::format("{}: byte {}", place, offset));
 }
 
 /// The file as far as its header says that it goes.

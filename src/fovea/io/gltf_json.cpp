@@ -60,7 +60,7 @@ class TreeBuilder {
   bool parse_error(std::size_t position, const std::string&, const Json::exception& e) {
     const std::size_t byte = offset_ + (position > 0 ? position - 1 : 0);
     throw Error(ErrorKind::format, "not valid JSON: " + plain_message(e.what()),
-                fmt::format("{} byte {}", place_, byte));
+                fmt::format("{}: byte {}", place_, byte));
   }
 
  private:

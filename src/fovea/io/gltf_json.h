@@ -45,7 +45,7 @@ class JsonView {
   const Json& raw() const { return *value_; }
   const std::string& pointer() const { return pointer_; }
   /// File and JSON pointer, as errors and diagnostics give it.
-  std::string place() const { return *file_ + pointer_; }
+  std::string place() const { return pointer_.empty() ? *file_ : *file_ + ": " + pointer_; }
   [[noreturn]] void fail(const std::string& message) const;
 
   /// A member of this object, or none. A value that is no object is a fault.

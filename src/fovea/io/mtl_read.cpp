@@ -49,7 +49,7 @@ class MtlReader {
   std::optional<TextureRef> use_map(const MapStatement& map);
   void use_normal_map(const MapStatement& map, bool may_be_height);
   void finish();
-  std::string here() const { return fmt::format("{}:line {}", place_, scan_.line()); }
+  std::string here() const { return fmt::format("{}: line {}", place_, scan_.line()); }
 
   TextScanner scan_;
   const std::string& place_;

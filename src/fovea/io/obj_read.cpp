@@ -52,7 +52,7 @@ class ObjParser {
   std::size_t table_size(int table) const;
   void refuse(const std::string& message) const { refuse_at(message, scan_.line()); }
   [[noreturn]] void refuse_at(const std::string& message, std::size_t line) const {
-    throw Error(ErrorKind::format, message, fmt::format("{}:line {}", place_, line));
+    throw Error(ErrorKind::format, message, fmt::format("{}: line {}", place_, line));
   }
 
   TextScanner scan_;
@@ -156,7 +156,7 @@ void ObjParser::read_face() {
   }
   if (file_.corners.size() - begin < 3) {
     context_.report("small-faces", "faces with fewer than three corners were dropped",
-                    fmt::format("{}:line {}", place_, scan_.line()));
+                    fmt::format("{}: line {}", place_, scan_.line()));
     file_.corners.resize(begin);
     return;
   }
@@ -207,7 +207,7 @@ void ObjParser::use_material(const std::string& name) {
 }
 
 void ObjParser::drop(std::string_view word) {
-  const std::string here = fmt::format("{}:line {}", place_, scan_.line());
+  const std::string here = fmt::format("{}: line {}", place_, scan_.line());
   if (word == "l" || word == "p") {
     context_.report("dropped-lines-points", "lines and points were dropped", here);
   } else {

@@ -56,7 +56,7 @@ class OffReader {
     return value;
   }
   [[noreturn]] void refuse(const std::string& message) const {
-    throw Error(ErrorKind::format, message, fmt::format("{}:line {}", place_, scan_.line()));
+    throw Error(ErrorKind::format, message, fmt::format("{}: line {}", place_, scan_.line()));
   }
 
   TextScanner scan_;

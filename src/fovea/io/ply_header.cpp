@@ -60,7 +60,7 @@ class HeaderParser {
   void skip_last_line_end();
   void check_sizes() const;
   [[noreturn]] void refuse(const std::string& message) const {
-    throw Error(ErrorKind::format, message, fmt::format("{}:line {}", place_, scan_.line()));
+    throw Error(ErrorKind::format, message, fmt::format("{}: line {}", place_, scan_.line()));
   }
 
   std::span<const std::byte> bytes_;
@@ -162,7 +162,7 @@ void HeaderParser::check_sizes() const {
       throw Error(ErrorKind::format,
                   fmt::format("{} rows of element \"{}\" need at least {} bytes each, but {} bytes follow",
                               element.count, element.name.substr(0, 64), row, left),
-                  place_ + ":header");
+                  place_ + ": header");
     }
     left -= std::min(left, row * element.count);
   }

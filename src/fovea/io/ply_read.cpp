@@ -35,7 +35,7 @@ class VertexTable {
     const auto count = static_cast<std::size_t>(element.count);
     mesh.positions.resize(count);
     if (!has({"x", "y", "z"}))
-      throw Error(ErrorKind::format, "the vertices have no x, y, z", place + ":header");
+      throw Error(ErrorKind::format, "the vertices have no x, y, z", place + ": header");
     if (count > 0) bind({"x", "y", "z"}, &mesh.positions[0].x, 3);
     add_attributes();
     add_custom_attributes();
@@ -226,7 +226,7 @@ void BodyReader<Source>::read_faces(const PlyElement& element) {
   int list = element.find("vertex_indices");
   if (list < 0) list = element.find("vertex_index");
   if (list < 0 || !element.properties[static_cast<std::size_t>(list)].is_list) {
-    throw Error(ErrorKind::format, "the faces have no list vertex_indices", place_ + ":header");
+    throw Error(ErrorKind::format, "the faces have no list vertex_indices", place_ + ": header");
   }
   const int uvs = element.find("texcoord"), texture = element.find("texnumber");
   for (std::uint64_t r = 0; r < element.count; ++r) {

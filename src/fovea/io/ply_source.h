@@ -49,7 +49,7 @@ class PlyBinarySource {
     at_ += count * size_of(type);
   }
   [[noreturn]] void refuse(const std::string& message) const {
-    throw Error(ErrorKind::format, message, fmt::format("{}:byte {}", place_, at_ - begin_));
+    throw Error(ErrorKind::format, message, fmt::format("{}: byte {}", place_, at_ - begin_));
   }
 
  private:
@@ -101,7 +101,7 @@ class PlyTextSource {
     for (std::uint64_t i = 0; i < count; ++i) take<double>();
   }
   [[noreturn]] void refuse(const std::string& message) const {
-    throw Error(ErrorKind::format, message, fmt::format("{}:line {}", place_, lines_ + scan_.line()));
+    throw Error(ErrorKind::format, message, fmt::format("{}: line {}", place_, lines_ + scan_.line()));
   }
 
  private:

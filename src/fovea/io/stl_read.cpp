@@ -47,7 +47,7 @@ std::vector<Vec3f> read_binary(std::span<const std::byte> bytes, const std::stri
     throw Error(ErrorKind::format,
                 fmt::format("{} triangles need {} bytes but the file has {}", count, kHeader + kFacet * count,
                             bytes.size()),
-                place + ":byte 80");
+                place + ": byte 80");
   }
   std::vector<Vec3f> corners;
   corners.reserve(3 * count);
@@ -58,7 +58,7 @@ std::vector<Vec3f> read_binary(std::span<const std::byte> bytes, const std::stri
       const Vec3f q{read_f32(p), read_f32(p + 4), read_f32(p + 8)};
       if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z)) {
         throw Error(ErrorKind::format, fmt::format("triangle {} has a corner that is not a finite number", t),
-                    fmt::format("{}:byte {}", place, p - bytes.data()));
+                    fmt::format("{}: byte {}", place, p - bytes.data()));
       }
       corners.push_back(q);
     }
@@ -70,7 +70,7 @@ std::vector<Vec3f> read_text(std::span<const std::byte> bytes, const std::string
   TextScanner scan(bytes);
   std::vector<Vec3f> corners;
   const auto refuse = [&](const char* message) {
-    throw Error(ErrorKind::format, message, fmt::format("{}:line {}", place, scan.line()));
+    throw Error(ErrorKind::format, message, fmt::format("{}: line {}", place, scan.line()));
   };
   for (; !scan.at_end(); scan.next_line()) {
     const std::string_view word = scan.word();

@@ -336,8 +336,7 @@ void Engine::try_vanish(std::uint32_t component) {
 // --- Carrying out a collapse -----------------------------------------------------------------------
 
 void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error) {
-  if (mesh_.vertices[a].locked ||
-      (!mesh_.vertices[b].locked && where.position == mesh_.position(a))) {
+  if (mesh_.vertices[a].locked || (!mesh_.vertices[b].locked && where.position == mesh_.position(a))) {
     std::swap(a, b);
     merge_.plan(a, b, where.position);
   }

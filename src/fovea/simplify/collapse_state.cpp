@@ -126,7 +126,8 @@ void Builder::make_connectivity() {
       CollapseFace& face = all.faces.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) face.vertex[k] = slot.first_vertex + t[k].value;
     }
-    for (const Vec3f& p : meshes_[m]->positions) all.vertices.emplace_back().position = Vec3f(slot.to_engine(p));
+    for (const Vec3f& p : meshes_[m]->positions)
+      all.vertices.emplace_back().position = Vec3f(slot.to_engine(p));
   }
   all.link();
 }
@@ -409,9 +410,9 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
   q.weight = area_[f] / 3;
   q.add_linear(normal_[f], -dot(normal_[f], p0), q.weight);
   if (area_[f] > 1e-16) {
-    const FaceFrame frame{f, m, q.weight, p0,
-                          TriangleGradient(mesh.position(t[1]) - p0,
-                                           mesh.position(t[2]) - p0, normal_[f], 2 * area_[f])};
+    const FaceFrame frame{
+        f, m, q.weight, p0,
+        TriangleGradient(mesh.position(t[1]) - p0, mesh.position(t[2]) - p0, normal_[f], 2 * area_[f])};
     for (Channel& channel : state_.channels) {
       if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid) continue;
       switch (channel.fit_width) {

@@ -54,8 +54,8 @@ class EdgeCost {
   const CollapseState& state_;
   const CollapseMesh& mesh_;
   const Placement placement_;
-  std::vector<std::uint32_t> slot_;    // [#V] into `separate_`, kInvalid without a channel of many values
-  std::vector<Quadric> separate_;      // what such a vertex's values make up for by themselves
+  std::vector<std::uint32_t> slot_;  // [#V] into `separate_`, kInvalid without a channel of many values
+  std::vector<Quadric> separate_;    // what such a vertex's values make up for by themselves
   std::vector<std::uint32_t> free_slots_;
   std::vector<std::uint32_t> values_;  // scratch of refresh()
 };

@@ -88,8 +88,7 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
 }
 
 bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
-  const Vec3d p1 = state_.mesh.position(face.next),
-              p2 = state_.mesh.position(face.previous);
+  const Vec3d p1 = state_.mesh.position(face.next), p2 = state_.mesh.position(face.previous);
   const Vec3d before = cross(p1 - from, p2 - from), after = cross(p1 - to, p2 - to);
   const double before2 = length_squared(before), after2 = length_squared(after);
   // Height / longest edge = double area / longest edge².
