@@ -18,8 +18,9 @@ namespace fovea {
 
 namespace {
 
-/// A collapse that breaks topology counts as this much dearer than one that does not.
-constexpr double kTopologyPenalty = 2;
+/// A collapse that breaks topology counts as this much dearer than one that does not: the next after a thin
+/// part (a leg, a finger) has become a prism leaves a flat sheet, or nothing, of it.
+constexpr double kTopologyPenalty = 4;
 /// After a refusal an edge is tried again when costs have risen by this factor ...
 constexpr double kRetryFactor = 2;
 /// ... so often, until a change around it gives it a new life.

@@ -87,7 +87,7 @@ constexpr std::size_t attribute_stride(int width) { return 4 * static_cast<std::
 /// Subtracts Σ_k (G_k·p + D_k)² / W from q: the value of each component is the best for p. With
 /// `times` −1 it takes that back.
 template <class T>
-void reduce(Quadric& q, const T* attribute, int width, double times = 1) {
+inline void reduce(Quadric& q, const T* attribute, int width, double times = 1) {
   const double weight = static_cast<double>(attribute[4 * width]);
   if (!(weight > 0)) return;
   const double factor = -times / weight;
@@ -100,7 +100,7 @@ void reduce(Quadric& q, const T* attribute, int width, double times = 1) {
 /// Adds Σ_k −2 s_k (G_k·p + D_k) + W s_k²: the value of each component stays s_k wherever p is. With
 /// `times` −1 it takes that back.
 template <class T>
-void hold(Quadric& q, const T* attribute, int width, const double* s, double times = 1) {
+inline void hold(Quadric& q, const T* attribute, int width, const double* s, double times = 1) {
   const double weight = static_cast<double>(attribute[4 * width]);
   for (int k = 0; k < width; ++k) {
     const T* g = attribute + 4 * k;
@@ -112,7 +112,7 @@ void hold(Quadric& q, const T* attribute, int width, const double* s, double tim
 
 /// The best value of component k at p.
 template <class T>
-double fitted_value(const T* attribute, int width, int k, Vec3d p) {
+inline double fitted_value(const T* attribute, int width, int k, Vec3d p) {
   const T* g = attribute + 4 * k;
   return (g[0] * p.x + g[1] * p.y + g[2] * p.z + g[3]) / attribute[4 * width];
 }
