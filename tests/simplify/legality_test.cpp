@@ -20,6 +20,7 @@ TEST(Legality, EveryEdgeOfASphereMayCollapse) {
   for (const CollapseEdge& edge : state.mesh.edges) {
     EXPECT_TRUE(legality.look_at(edge.ends[0], edge.ends[1]));
     EXPECT_EQ(legality.topology(), Block::none);
+    EXPECT_FALSE(legality.leaves_scrap());
   }
 }
 
@@ -47,6 +48,19 @@ TEST(Legality, ARingOfThreeEdgesDoesNotClose) {
   ASSERT_EQ(middle.size(), 3u);
   EXPECT_FALSE(legality.look_at(middle[0], middle[1]));
   EXPECT_EQ(legality.topology(), Block::topology);
+}
+
+TEST(Legality, OneTriangleOfThreeIsAScrap) {
+  test::PartBuilder part;
+  const std::uint32_t centre = part.vertex({0, 0, 0}, {0, 0}), x = part.vertex({1, 0, 0}, {1, 0}),
+                      y = part.vertex({0, 1, 0}, {0, 1}), z = part.vertex({0, 0, 1}, {1, 1});
+  part.triangle(centre, x, y);
+  part.triangle(centre, y, z);
+  part.triangle(centre, z, x);
+  CollapseState fan = test::state_of(test::weld_part(part.part()));
+  Legality legality(fan);
+  legality.look_at(test::vertex_at(fan, {0, 0, 0}), test::vertex_at(fan, {1, 0, 0}));
+  EXPECT_TRUE(legality.leaves_scrap());
 }
 
 TEST(Legality, ATriangleMustNotTurnOver) {

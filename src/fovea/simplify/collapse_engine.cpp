@@ -18,9 +18,9 @@ namespace fovea {
 
 namespace {
 
-/// A collapse that breaks topology counts as this much dearer than one that does not: the next after a thin
-/// part (a leg, a finger) has become a prism leaves a flat sheet, or nothing, of it.
-constexpr double kTopologyPenalty = 4;
+/// A collapse that breaks topology or leaves a scrap counts as this much dearer than one that does not: once a
+/// thin part (a leg, a finger) is a prism, that makes a flat sheet of it and then next to nothing.
+constexpr double kRuinPenalty = 4;
 /// After a refusal an edge is tried again when costs have risen by this factor ...
 constexpr double kRetryFactor = 2;
 /// ... so often, until a change around it gives it a new life.
@@ -295,7 +295,8 @@ bool Engine::is_dearer(const Due& due, double price) {
 
 /// A collapse that is legal is carried out if it costs about what it was queued for.
 void Engine::take_or_requeue(const Due& due, const Candidate& where) {
-  if (is_dearer(due, where.cost * (legality_.topology() == Block::none ? 1 : kTopologyPenalty))) return;
+  const bool ruins = legality_.topology() != Block::none || legality_.leaves_scrap();
+  if (is_dearer(due, where.cost * (ruins ? kRuinPenalty : 1))) return;
   const double error = std::sqrt(where.cost / std::max(due.quadric.weight, 1e-30));
   if (error > max_error_) {
     over_error_ = true;

@@ -24,6 +24,8 @@ class Legality {
   /// `topology` says what is wrong: `last` if no triangle would be left around the edge, else `topology`.
   bool look_at(std::uint32_t a, std::uint32_t b);
   Block topology() const { return topology_; }
+  /// Whether so few triangles are left around the edge that next to nothing is seen of a thin part.
+  bool leaves_scrap() const { return far_.size() <= 2; }
   /// Whether the edge leaves triangles on each other.
   bool may_coincide() const { return topology_ == Block::topology; }
 
