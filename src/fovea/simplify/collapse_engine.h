@@ -33,8 +33,9 @@ struct CollapseOutcome {
 /// queued for stays a lower bound and is corrected when they come up. A few at a time, because most of the
 /// time goes into waiting for memory, and that of several edges can be waited for together.
 ///
-/// Where the surface's topology forbids a collapse it is put off by a constant factor rather than refused,
-/// unless `keep_topology`: a model of many handles and parts still reaches its target, late.
+/// A collapse that breaks the surface's topology is put off by a constant factor rather than refused, unless
+/// `keep_topology`: a model of many handles and parts still reaches its target, late. So is one that leaves
+/// next to nothing of a thin part.
 ///
 /// `state` is used up. Stops at `target_triangles`, or when every collapse left exceeds `max_error`
 /// (units of the scene's diagonal). Sequential, O(#steps · one-ring); the initial costs are parallel.
