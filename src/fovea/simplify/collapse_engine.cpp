@@ -18,8 +18,8 @@ namespace fovea {
 
 namespace {
 
-/// A collapse that breaks topology or leaves a scrap counts as this much dearer than one that does not: once a
-/// thin part (a leg, a finger) is a prism, that makes a flat sheet of it and then next to nothing.
+/// A collapse that breaks topology or leaves a scrap counts as this much dearer than one that does not: once
+/// a thin part (a leg, a finger) is a prism, that makes a flat sheet of it and then next to nothing.
 constexpr double kRuinPenalty = 4;
 /// After a refusal an edge is tried again when costs have risen by this factor ...
 constexpr double kRetryFactor = 2;
