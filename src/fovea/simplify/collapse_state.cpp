@@ -80,7 +80,7 @@ class Builder {
   void add_face_quadrics();
   void add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
                 std::vector<double>& scratch);
-  template <int kWidth>
+  template <int Width>
   void add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
                   std::vector<double>& scratch, Quadric& q);
   void add_edge_quadrics();
@@ -428,11 +428,11 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
 }
 
 /// Adds how a channel runs over a face, as linear functions in lengths, to the face's quadric and to those
-/// of its values. What is too steep is damped. `kWidth` is what fits the channel, or 0 for any.
-template <int kWidth>
+/// of its values. What is too steep is damped. `Width` is what fits the channel, or 0 for any.
+template <int Width>
 void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
                          std::vector<double>& scratch, Quadric& q) {
-  const int width = kWidth > 0 ? kWidth : channel.fit_width;
+  const int width = Width > 0 ? Width : channel.fit_width;
   const std::size_t stride = attribute_stride(width);
   scratch.resize(std::max(scratch.size(), stride));
   double* const slopes = scratch.data();  // in the layout of attribute quadrics

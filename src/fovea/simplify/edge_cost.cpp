@@ -13,18 +13,18 @@ namespace {
 /// Optimal positions further from the edge than this many edge lengths are not believed.
 constexpr double kReach = 2;
 
-/// The sum of attribute quadrics of one channel. `kWidth` is what fits the channel, or 0 for any.
-template <int kWidth>
+/// The sum of attribute quadrics of one channel. `Width` is what fits the channel, or 0 for any.
+template <int Width>
 class AttributeSum {
  public:
   explicit AttributeSum(int width) : stride_(attribute_stride(width)) {}
   void add(const float* q) {
-    const std::size_t stride = kWidth > 0 ? attribute_stride(kWidth) : stride_;
+    const std::size_t stride = Width > 0 ? attribute_stride(Width) : stride_;
     if (sum_ == nullptr) {
       sum_ = q;  // most often nothing else comes, or one more
       return;
     }
-    if constexpr (kWidth == 0) total_.resize(stride);
+    if constexpr (Width == 0) total_.resize(stride);
     for (std::size_t i = 0; i < stride; ++i) total_[i] = sum_[i] + q[i];
     sum_ = total_.data();
   }
@@ -33,7 +33,7 @@ class AttributeSum {
  private:
   std::size_t stride_;
   const float* sum_ = nullptr;
-  std::conditional_t<kWidth == 0, std::vector<float>, std::array<float, attribute_stride(kWidth)>> total_;
+  std::conditional_t<Width == 0, std::vector<float>, std::array<float, attribute_stride(Width)>> total_;
 };
 
 /// Adds the error of an attribute quadric whose texture coordinates stay those of `value`.
@@ -114,16 +114,16 @@ Quadric EdgeCost::separate(const Channel& channel, std::uint32_t v, std::uint32_
 
 /// For a channel with several values at an end: those that join on the edge are settled together instead
 /// of by themselves.
-template <int kWidth>
+template <int Width>
 void EdgeCost::settle_joined(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
                              const EdgeCorners& corners) const {
-  const int width = kWidth > 0 ? kWidth : channel.fit_width;
+  const int width = Width > 0 ? Width : channel.fit_width;
   const std::uint32_t mesh = state_.slot_of_vertex(a);
   const bool many_a = channel.single[a] == Channel::kMany, many_b = channel.single[b] == Channel::kMany;
   const JoinedValues joined(channel, corners);
   for (std::uint32_t root = 0; root < joined.size(); ++root) {
     if (joined[root].root != root) continue;
-    AttributeSum<kWidth> sum(width);
+    AttributeSum<Width> sum(width);
     ClassEnds ends;
     for (std::uint32_t k = root; k < joined.size(); ++k) {
       const JoinedValues::Member& member = joined[k];
@@ -147,16 +147,16 @@ void EdgeCost::settle_joined(Quadric& q, const Channel& channel, std::uint32_t a
 }
 
 /// Adds what the values of one channel make up for, beyond those in `separate_`.
-template <int kWidth>
+template <int Width>
 void EdgeCost::settle(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
                       const EdgeCorners& corners) const {
-  const int width = kWidth > 0 ? kWidth : channel.fit_width;
+  const int width = Width > 0 ? Width : channel.fit_width;
   const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
   if (single_a == Channel::kMany || single_b == Channel::kMany) {
-    settle_joined<kWidth>(q, channel, a, b, corners);
+    settle_joined<Width>(q, channel, a, b, corners);
     return;
   }
-  AttributeSum<kWidth> sum(width);
+  AttributeSum<Width> sum(width);
   for (const std::uint32_t single : {single_a, single_b}) {
     if (single != kInvalid) sum.add(channel.value_quadric(single));
   }

@@ -44,10 +44,10 @@ class EdgeCost {
   std::size_t fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const;
 
  private:
-  template <int kWidth>
+  template <int Width>
   void settle(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
               const EdgeCorners& corners) const;
-  template <int kWidth>
+  template <int Width>
   void settle_joined(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
                      const EdgeCorners& corners) const;
 
