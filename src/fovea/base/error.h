@@ -30,7 +30,7 @@ class Error : public std::runtime_error {
   const std::string& place() const { return place_; }
   const std::string& hint() const { return hint_; }
 
-  /// The same error with `outer` put before its place ("model.glb" + "/meshes/0").
+  /// The same error with `outer` put before its place: "model.glb: /meshes/0".
   Error within(const std::string& outer) const;
 
  private:
