@@ -90,7 +90,7 @@ TEST(CollapseMesh, CountsFacesOnEdges) {
   const CollapseMesh mesh = make(test::non_manifold_edge());
   const auto edges_with = [&](std::uint32_t faces) {
     return std::count_if(mesh.edges.begin(), mesh.edges.end(),
-                         [&](const CollapseEdge& e) { return e.face_count == faces; });
+                         [&](const CollapseEdge& e) { return e.face_count() == faces; });
   };
   EXPECT_EQ(edges_with(3), 1);
   EXPECT_EQ(edges_with(1), 6);

@@ -26,4 +26,14 @@ inline std::uint32_t vertex_at(const CollapseState& state, Vec3f local) {
   return kInvalid;
 }
 
+/// The edge a–b; kInvalid if there is none.
+inline std::uint32_t edge_between(const CollapseState& state, std::uint32_t a, std::uint32_t b) {
+  for (const std::uint32_t c : state.mesh.ring(a)) {
+    const CornerView at_c = state.mesh.view(c);
+    if (at_c.next == b) return at_c.to_next;
+    if (at_c.previous == b) return at_c.to_previous;
+  }
+  return kInvalid;
+}
+
 }  // namespace fovea::test

@@ -94,9 +94,10 @@ TEST(Legality, ATriangleMustNotTurnOverInTheTexture) {
   const std::uint32_t at_a = test::vertex_at(state, {0, 0, 0}), at_b = test::vertex_at(state, {1, 0, 0});
   ValueMerge merge(state, Placement::optimal);
   legality.look_at(at_a, at_b);
-  merge.plan(at_a, at_b, state.mesh.position(at_a));
+  const std::uint32_t edge = test::edge_between(state, at_a, at_b);
+  merge.plan(edge, at_a, at_b, state.mesh.position(at_a));
   EXPECT_TRUE(legality.texture(merge));
-  merge.plan(at_a, at_b, state.mesh.position(at_b));
+  merge.plan(edge, at_a, at_b, state.mesh.position(at_b));
   EXPECT_FALSE(legality.texture(merge));
 }
 

@@ -26,7 +26,7 @@ std::size_t class_count(const ValueClasses& classes) {
 /// The classes of the channel for the edge a–b.
 void find(ValueClasses& classes, const CollapseState& state, const Channel& channel, std::uint32_t a,
           std::uint32_t b) {
-  classes.find(state.mesh, channel, a, b, state.mesh.edge_corners(a, b));
+  classes.find(state.mesh, channel, a, b, state.mesh.edge_corners(test::edge_between(state, a, b), a));
 }
 
 /// Every entry is reached from its root, once.

@@ -75,17 +75,17 @@ class Engine {
   void price(Due& due);
   void try_edge(Due& due);
   bool is_dearer(const Due& due, double price);
-  bool is_legal(std::uint32_t a, std::uint32_t b, Vec3d p);
+  bool is_legal(std::uint32_t e, Vec3d p);
   void take_or_requeue(const Due& due, const Candidate& where);
   void try_vanish(std::uint32_t component);
   void put_off(const Due& due);
   void count_blocked();
 
-  void commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error);
+  void commit(std::uint32_t e, const Candidate& where, double error);
   void merge_edges(std::uint32_t a, std::uint32_t b);
   void drop_shared_faces(std::uint32_t a, std::uint32_t b);
   void drop_coincident_faces(std::uint32_t b);
-  void leave_edge(std::uint32_t e);
+  void leave_edge(std::uint32_t e, std::uint32_t half_edge);
   void drop_face(std::uint32_t f);
   void retire_values(std::uint32_t a, std::uint32_t b);
   void look_at_values(std::uint32_t v);
@@ -123,8 +123,8 @@ void Engine::fill_queue() {
   std::vector<float> cost(edge_count_);
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
-      const auto [a, b] = mesh_.edges[e].ends;
-      cost[e] = static_cast<float>(cost_.best_place(a, b, cost_.quadric(a, b)).cost);
+      const auto edge = static_cast<std::uint32_t>(e);
+      cost[e] = static_cast<float>(cost_.best_place(edge, cost_.quadric(edge)).cost);
     }
   });
   for (std::uint32_t e = 0; e < edge_count_; ++e) {
@@ -185,31 +185,19 @@ void Engine::take_batch() {
     if (item < edge_count_) prefetch(&mesh_.edges[item]);
   }
   for (const Due& due : batch_) {
-    if (due.item >= edge_count_) continue;
-    for (const std::uint32_t v : mesh_.edges[due.item].ends) {
-      prefetch(&mesh_.vertices[v]);
-      prefetch(&mesh_.quadrics[v]);
-      prefetch(&mesh_.quadrics[v].weight);
-      for (const Channel& channel : state_.channels) prefetch(&channel.single[v]);
-    }
+    if (due.item < edge_count_) cost_.fetch_ends(due.item);
   }
   for (const Due& due : batch_) {
-    if (due.item >= edge_count_) continue;
-    for (const std::uint32_t v : mesh_.edges[due.item].ends) {
-      for (const Channel& channel : state_.channels) {
-        if (channel.kind != ChannelKind::fitted || channel.single[v] >= Channel::kMany) continue;
-        const float* const quadric = channel.value_quadric(channel.single[v]);
-        prefetch(quadric);
-        prefetch(quadric + attribute_stride(channel.fit_width) - 1);
-      }
-    }
+    if (due.item < edge_count_) cost_.fetch_values(due.item);
+  }
+  for (const Due& due : batch_) {
+    if (due.item < edge_count_) cost_.fetch_joined(due.item);
   }
 }
 
 void Engine::price(Due& due) {
-  const auto [a, b] = mesh_.edges[due.item].ends;
-  due.quadric = cost_.quadric(a, b);
-  due.place = cost_.best_place(a, b, due.quadric);
+  due.quadric = cost_.quadric(due.item);
+  due.place = cost_.best_place(due.item, due.quadric);
 }
 
 /// Puts back the edges of the batch that cost more by now than they were queued for.
@@ -240,7 +228,7 @@ void Engine::fetch_surroundings() const {
   };
   for_corners([&](std::uint32_t c) {
     prefetch(&mesh_.faces[c / 3]);
-    for (const Channel& channel : state_.channels) prefetch(&channel.corner_value[c]);
+    if (!state_.channels.empty()) prefetch(&state_.channels.front().corner_value[c]);
   });
   // The vertices and values next to each corner: around a vertex that is all of them, once.
   for_corners([&](std::uint32_t c) {
@@ -265,23 +253,25 @@ void Engine::try_edge(Due& due) {
     put_off(due);
     return;
   }
-  if (is_legal(a, b, due.place.position)) {
+  if (is_legal(due.item, due.place.position)) {
     take_or_requeue(due, due.place);
     return;
   }
   std::array<Candidate, 3> places;
-  const std::size_t count = cost_.fallbacks(a, b, due.quadric, places.data());
+  const std::size_t count = cost_.fallbacks(due.item, due.quadric, places.data());
   for (std::size_t i = 0; i < count; ++i) {
-    if (!is_legal(a, b, places[i].position)) continue;
+    if (!is_legal(due.item, places[i].position)) continue;
     take_or_requeue(due, places[i]);
     return;
   }
   put_off(due);
 }
 
-bool Engine::is_legal(std::uint32_t a, std::uint32_t b, Vec3d p) {
+/// Whether the edge, which `legality_` looks at, may collapse to p.
+bool Engine::is_legal(std::uint32_t e, Vec3d p) {
   if (!legality_.shape(p)) return false;
-  merge_.plan(a, b, p);
+  const auto [a, b] = mesh_.edges[e].ends;
+  merge_.plan(e, a, b, p);
   return legality_.texture(merge_);
 }
 
@@ -302,8 +292,7 @@ void Engine::take_or_requeue(const Due& due, const Candidate& where) {
     over_error_ = true;
     return;
   }
-  const auto [a, b] = mesh_.edges[due.item].ends;
-  commit(a, b, where, error);
+  commit(due.item, where, error);
 }
 
 void Engine::put_off(const Due& due) {
@@ -337,10 +326,11 @@ void Engine::try_vanish(std::uint32_t component) {
 
 // --- Carrying out a collapse -----------------------------------------------------------------------
 
-void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, double error) {
+void Engine::commit(std::uint32_t e, const Candidate& where, double error) {
+  auto [a, b] = mesh_.edges[e].ends;
   if (mesh_.vertices[a].locked || (!mesh_.vertices[b].locked && where.position == mesh_.position(a))) {
     std::swap(a, b);
-    merge_.plan(a, b, where.position);
+    merge_.plan(e, a, b, where.position);
   }
   const std::uint32_t m = state_.slot_of_vertex(a);
   const MeshSlot& slot = state_.slots[m];
@@ -371,15 +361,16 @@ void Engine::commit(std::uint32_t a, std::uint32_t b, const Candidate& where, do
   finish_step(step, error);
 }
 
-/// One face less on edge e; with the last the edge goes.
-void Engine::leave_edge(std::uint32_t e) {
-  if (--mesh_.edges[e].face_count == 0) queue_.remove(e);
+/// A half-edge leaves edge e; with the last the edge goes.
+void Engine::leave_edge(std::uint32_t e, std::uint32_t half_edge) {
+  mesh_.edges[e].remove(half_edge);
+  if (!mesh_.edge_alive(e)) queue_.remove(e);
 }
 
 void Engine::drop_face(std::uint32_t f) {
   for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
     if (cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
-    leave_edge(mesh_.edge(c));
+    leave_edge(mesh_.edge(c), c);
     mesh_.unlink_corner(c);
   }
   mesh_.kill_face(f);
@@ -415,8 +406,8 @@ void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
       mesh_.edges[e].ends = {b, w};
     } else if (const std::uint32_t kept = mesh_.vertices[w].mark_count; kept != e) {
       mesh_.edge(half_edge) = kept;
-      ++mesh_.edges[kept].face_count;
-      leave_edge(e);
+      mesh_.edges[kept].add(half_edge);
+      leave_edge(e, half_edge);
     }
   };
   mesh_.for_ring(a, [&](std::uint32_t c) {
@@ -484,16 +475,16 @@ void Engine::look_at_values(std::uint32_t v) {
 void Engine::revive_edges(std::uint32_t b) {
   if (!mesh_.vertices[b].refused) return;
   mesh_.vertices[b].refused = 0;
-  const auto revive = [&](std::uint32_t e, std::uint32_t w) {
+  const auto revive = [&](std::uint32_t e) {
     if (tries_[e] == 0) return;
     tries_[e] = 0;
-    const double cost = cost_.best_place(b, w, cost_.quadric(b, w)).cost;
+    const double cost = cost_.best_place(e, cost_.quadric(e)).cost;
     if (std::isfinite(cost)) queue_.set(e, cost);
   };
   mesh_.for_ring(b, [&](std::uint32_t c) {
     const CornerView at_c = mesh_.view(c);
-    revive(at_c.to_next, at_c.next);
-    revive(at_c.to_previous, at_c.previous);
+    revive(at_c.to_next);
+    revive(at_c.to_previous);
   });
 }
 

@@ -21,10 +21,10 @@ void CollapseMesh::link() {
       if (w.mark != mark) {
         w.mark = mark;
         w.mark_count = static_cast<std::uint32_t>(edges.size());
-        edges.push_back({{v, other}, 0});
+        edges.push_back({{v, other}});
       }
       edge(half_edge) = w.mark_count;
-      ++edges[w.mark_count].face_count;
+      edges[w.mark_count].add(half_edge);
     };
     for_ring(v, [&](std::uint32_t c) {
       number(c, vertex(next(c)));
@@ -60,23 +60,25 @@ void CollapseMesh::link_rings() {
   free_room_.assign(32, kInvalid);
 }
 
-EdgeCorners CollapseMesh::edge_corners(std::uint32_t a, std::uint32_t b) const {
+EdgeCorners CollapseMesh::edge_corners(std::uint32_t e, std::uint32_t a) const {
   EdgeCorners found;
-  const bool from_a = vertices[a].ring_size <= vertices[b].ring_size;
-  const std::uint32_t other = from_a ? b : a;
-  for (const std::uint32_t c : ring(from_a ? a : b)) {
-    const CollapseFace& face = faces[c / 3];
-    std::uint32_t d = 3 * (c / 3);
-    if (face.vertex[1] == other) {
-      d += 1;
-    } else if (face.vertex[2] == other) {
-      d += 2;
-    } else if (face.vertex[0] != other) {
-      continue;
+  const auto add = [&](std::uint32_t half_edge) {
+    auto& pair = found.pairs[found.count++];
+    pair = {half_edge, next(half_edge)};
+    if (vertex(half_edge) != a) std::swap(pair[0], pair[1]);
+  };
+  const CollapseEdge& edge = edges[e];
+  if (edge.is_listed()) {
+    for (const std::uint32_t half_edge : edge.half_edges) {
+      if (half_edge != kInvalid) add(half_edge);
     }
+    return found;
+  }
+  for (const std::uint32_t c : ring(a)) {
     if (found.count == EdgeCorners::kMost) break;
-    found.pairs[found.count][0] = from_a ? c : d;
-    found.pairs[found.count++][1] = from_a ? d : c;
+    const CornerView at_c = view(c);
+    if (at_c.to_next == e) add(c);
+    if (at_c.to_previous == e) add(previous(c));
   }
   return found;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "fovea/base/math.h"
@@ -29,10 +30,37 @@ struct alignas(32) CollapseVertex {
   std::uint32_t mark_count = 0;      ///< Scratch that holds while `mark` does.
 };
 
-/// An edge of the engine; gone when no face is left on it.
-struct CollapseEdge {
+/// An edge of the engine, with the half-edges of its triangles (a half-edge is the corner that it starts
+/// from); gone when none is left. Where more than two triangles meet they are only counted.
+struct alignas(16) CollapseEdge {
   std::array<std::uint32_t, 2> ends;
-  std::uint32_t face_count = 0;
+  std::array<std::uint32_t, 2> half_edges = {kInvalid, kInvalid};  ///< Or their number and kCounted.
+
+  static constexpr std::uint32_t kCounted = kInvalid - 1;
+  bool is_listed() const { return half_edges[1] != kCounted; }
+  std::uint32_t face_count() const {
+    return is_listed() ? (half_edges[0] != kInvalid) + (half_edges[1] != kInvalid) : half_edges[0];
+  }
+  void add(std::uint32_t half_edge) {
+    if (!is_listed()) {
+      ++half_edges[0];
+    } else if (half_edges[0] == kInvalid) {
+      half_edges[0] = half_edge;
+    } else if (half_edges[1] == kInvalid) {
+      half_edges[1] = half_edge;
+    } else {
+      half_edges = {3, kCounted};
+    }
+  }
+  void remove(std::uint32_t half_edge) {
+    if (!is_listed()) {
+      --half_edges[0];
+    } else if (half_edges[1] == half_edge) {
+      half_edges[1] = kInvalid;
+    } else {
+      half_edges[0] = std::exchange(half_edges[1], kInvalid);
+    }
+  }
 };
 
 /// What the triangle at a corner has on its other two corners.
@@ -80,7 +108,7 @@ struct CollapseMesh {
   }
   Vec3d position(std::uint32_t v) const { return Vec3d(vertices[v].position); }
   bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
-  bool edge_alive(std::uint32_t e) const { return edges[e].face_count > 0; }
+  bool edge_alive(std::uint32_t e) const { return edges[e].face_count() > 0; }
 
   /// The corners at v. Valid until a ring changes.
   std::span<const std::uint32_t> ring(std::uint32_t v) const {
@@ -92,8 +120,8 @@ struct CollapseMesh {
     for (const std::uint32_t c : ring(v)) f(c);
   }
 
-  /// The triangles on the edge a–b. O(valence).
-  EdgeCorners edge_corners(std::uint32_t a, std::uint32_t b) const;
+  /// The triangles on edge e, of which a is one end. O(1); O(valence) where more than two meet.
+  EdgeCorners edge_corners(std::uint32_t e, std::uint32_t a) const;
 
   /// Takes corner c out of the ring of its vertex.
   void unlink_corner(std::uint32_t c);

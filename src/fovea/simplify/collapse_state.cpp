@@ -72,7 +72,7 @@ class Builder {
   Channel& channel_for(const AttributeLayer& layer);
   void append_values(Channel& channel, std::size_t m, const std::vector<const AttributeLayer*>& layers,
                      const std::vector<std::uint32_t>& layer_indices);
-  void pad_channels();
+  void make_columns();
   void make_locks();
   void measure_faces();
   void find_single_values(Channel& channel) const;
@@ -207,20 +207,22 @@ void Builder::make_channels() {
     channel.slices.resize(meshes_.size());
     channel.first_value.assign(meshes_.size(), 0);
     channel.scale.assign(meshes_.size(), 1.0);
-    channel.corner_value.reserve(3 * state_.mesh.faces.size());
   }
+  make_columns();
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     add_layer_channels(m);
     add_morph_channel(m);
-    pad_channels();
   }
 }
 
-/// Corner maps of channels that mesh m did not fill say "none" for its corners.
-void Builder::pad_channels() {
-  std::size_t corners = 0;
-  for (const Channel& channel : state_.channels) corners = std::max(corners, channel.corner_value.size());
-  for (Channel& channel : state_.channels) channel.corner_value.resize(corners, kInvalid);
+/// Room for what the channels have for corners and vertices; nothing to begin with.
+void Builder::make_columns() {
+  const std::size_t channels = state_.channels.size(), corners = 3 * state_.mesh.faces.size();
+  state_.columns.assign(channels * (corners + state_.mesh.vertices.size()), kInvalid);
+  for (std::size_t i = 0; i < channels; ++i) {
+    state_.channels[i].corner_value = Column(state_.columns.data() + i, channels);
+    state_.channels[i].single = Column(state_.columns.data() + channels * corners + i, channels);
+  }
 }
 
 void Builder::add_layer_channels(std::size_t m) {
@@ -265,9 +267,10 @@ void Builder::append_values(Channel& channel, std::size_t m, const std::vector<c
       }
     }
   }
+  std::size_t corner = 3 * std::size_t{state_.slots[m].first_face};
   for (const ValueId value : layers.front()->corner_value) {
-    channel.corner_value.push_back(value.valid() ? static_cast<std::uint32_t>(first) + value.value
-                                                 : kInvalid);
+    if (value.valid()) channel.corner_value[corner] = static_cast<std::uint32_t>(first) + value.value;
+    ++corner;
   }
 }
 
@@ -287,8 +290,9 @@ void Builder::add_morph_channel(std::size_t m) {
       *out++ = morph[v].z;
     }
   }
+  std::size_t corner = 3 * std::size_t{state_.slots[m].first_face};
   for (const auto& t : mesh.triangles) {
-    for (const VertexId v : t) channel.corner_value.push_back(static_cast<std::uint32_t>(first) + v.value);
+    for (const VertexId v : t) channel.corner_value[corner++] = static_cast<std::uint32_t>(first) + v.value;
   }
 }
 
@@ -308,7 +312,7 @@ void Builder::make_locks() {
   }
   if (!options_.lock_boundary) return;
   for (const CollapseEdge& edge : state_.mesh.edges) {
-    if (edge.face_count != 1) continue;
+    if (edge.face_count() != 1) continue;
     for (const std::uint32_t v : edge.ends) state_.mesh.vertices[v].locked = 1;
   }
 }
@@ -330,11 +334,10 @@ void Builder::measure_faces() {
 }
 
 void Builder::find_single_values(Channel& channel) const {
-  channel.single.assign(state_.mesh.vertices.size(), kInvalid);
-  for (std::size_t c = 0; c < channel.corner_value.size(); ++c) {
+  for (std::uint32_t c = 0; c < 3 * state_.mesh.faces.size(); ++c) {
     const std::uint32_t value = channel.corner_value[c];
     if (value == kInvalid) continue;
-    std::uint32_t& single = channel.single[state_.mesh.vertex(static_cast<std::uint32_t>(c))];
+    std::uint32_t& single = channel.single[state_.mesh.vertex(c)];
     single = single == kInvalid || single == value ? value : Channel::kMany;
   }
 }
@@ -501,9 +504,9 @@ void Builder::add_edge_quadrics() {
   };
   for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {
     const std::uint32_t e = mesh.edge(c);
-    if (mesh.edges[e].face_count == 1) {
+    if (mesh.edges[e].face_count() == 1) {
       hold(c, kBoundaryWeight * options_.boundary_weight);
-    } else if (mesh.edges[e].face_count == 2) {
+    } else if (mesh.edges[e].face_count() == 2) {
       if (first_corner[e] == kInvalid) {
         first_corner[e] = c;
       } else if (is_seam(first_corner[e], c)) {

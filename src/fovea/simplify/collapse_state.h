@@ -30,6 +30,20 @@ struct ChannelSlice {
   Semantic semantic = Semantic::custom;
 };
 
+/// What one channel has for each item of a table; what the channels have for the same item lies together,
+/// since it is read together.
+class Column {
+ public:
+  Column() = default;
+  Column(std::uint32_t* first, std::size_t channels) : first_(first), channels_(channels) {}
+  std::uint32_t& operator[](std::size_t item) { return first_[item * channels_]; }
+  const std::uint32_t& operator[](std::size_t item) const { return first_[item * channels_]; }
+
+ private:
+  std::uint32_t* first_ = nullptr;
+  std::size_t channels_ = 0;
+};
+
 /// An attribute of all meshes together: the same values and corner map as the layers, in one array
 /// each, with what the engine needs to know to fit them.
 struct Channel {
@@ -38,12 +52,12 @@ struct Channel {
   int set = 0;
   std::string name;
   bool is_position_morph = false;
-  int fit_width = 0;  ///< Leading floats of a value that are fitted; the others are interpolated.
-  int width = 0;      ///< Floats per value.
-  std::vector<std::uint32_t> corner_value;        ///< [#F × 3] or kInvalid.
-  std::vector<std::uint32_t> single;              ///< [#V]: the vertex's only value, kMany or kInvalid.
-  std::vector<float> values;                      ///< [#values × width], in the layer's units.
-  std::vector<float> quadric;                     ///< [#values × attribute_stride(fit_width)] if fitted.
+  int fit_width = 0;           ///< Leading floats of a value that are fitted; the others are interpolated.
+  int width = 0;               ///< Floats per value.
+  Column corner_value;         ///< [#F × 3] or kInvalid.
+  Column single;               ///< [#V]: the vertex's only value, kMany or kInvalid.
+  std::vector<float> values;   ///< [#values × width], in the layer's units.
+  std::vector<float> quadric;  ///< [#values × attribute_stride(fit_width)] if fitted.
   std::vector<std::vector<ChannelSlice>> slices;  ///< [#meshes]; empty where the mesh lacks it.
   std::vector<std::uint32_t> first_value;         ///< [#meshes]
   std::vector<double> scale;  ///< [#meshes], from the layer's units to lengths of the engine.
@@ -77,9 +91,14 @@ struct VanishCandidate {
 /// All that the engine works on: the meshes of a scene in one set of arrays, lengths in units of the
 /// scene's diagonal so that costs of different meshes compare.
 struct CollapseState {
+  CollapseState() = default;
+  CollapseState(CollapseState&&) = default;  // not copied: channels point into `columns`
+  CollapseState& operator=(CollapseState&&) = default;
+
   CollapseMesh mesh;
   std::vector<Channel> channels;
-  std::vector<MeshSlot> slots;  // [#meshes]
+  std::vector<std::uint32_t> columns;  // of the channels: [#F × 3][#channels], then [#V][#channels]
+  std::vector<MeshSlot> slots;         // [#meshes]
   FaceComponents components;
   std::vector<VanishCandidate> vanish;  // [#components]
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <type_traits>
 
+#include "fovea/base/prefetch.h"
 #include "fovea/simplify/value_classes.h"
 
 namespace fovea {
@@ -163,12 +164,13 @@ void EdgeCost::settle(Quadric& q, const Channel& channel, std::uint32_t a, std::
   if (sum.get() != nullptr) reduce(q, sum.get(), width);
 }
 
-Quadric EdgeCost::quadric(std::uint32_t a, std::uint32_t b) const {
+Quadric EdgeCost::quadric(std::uint32_t e) const {
+  const auto [a, b] = mesh_.edges[e].ends;
   Quadric q = mesh_.quadrics[a] + mesh_.quadrics[b];
   EdgeCorners corners;
   const std::uint32_t slot_a = slot_[a], slot_b = slot_[b];
   if (slot_a != kInvalid || slot_b != kInvalid) {
-    corners = mesh_.edge_corners(a, b);
+    corners = mesh_.edge_corners(e, a);
     if (slot_a != kInvalid) q += separate_[slot_a];
     if (slot_b != kInvalid) q += separate_[slot_b];
   }
@@ -184,7 +186,8 @@ Quadric EdgeCost::quadric(std::uint32_t a, std::uint32_t b) const {
   return q;
 }
 
-std::size_t EdgeCost::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const {
+std::size_t EdgeCost::fallbacks(std::uint32_t e, const Quadric& q, Candidate* out) const {
+  const auto [a, b] = mesh_.edges[e].ends;
   const Vec3d pa = mesh_.position(a), pb = mesh_.position(b);
   std::size_t count = 0;
   const auto add = [&](Vec3d p) {
@@ -199,7 +202,60 @@ std::size_t EdgeCost::fallbacks(std::uint32_t a, std::uint32_t b, const Quadric&
   return count;
 }
 
-Candidate EdgeCost::best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const {
+void EdgeCost::fetch_ends(std::uint32_t e) const {
+  for (const std::uint32_t v : mesh_.edges[e].ends) {
+    prefetch(&mesh_.vertices[v]);
+    prefetch(&mesh_.quadrics[v]);
+    prefetch(&mesh_.quadrics[v].weight);
+    prefetch(&slot_[v]);
+    if (!state_.channels.empty()) prefetch(&state_.channels.front().single[v]);
+  }
+}
+
+void EdgeCost::fetch_values(std::uint32_t e) const {
+  const CollapseEdge& edge = mesh_.edges[e];
+  bool at_seam = false;
+  for (const std::uint32_t v : edge.ends) {
+    for (const Channel& channel : state_.channels) {
+      if (channel.kind == ChannelKind::fitted && channel.single[v] < Channel::kMany)
+        fetch_value(channel, channel.single[v]);
+    }
+    if (slot_[v] == kInvalid) continue;
+    at_seam = true;
+    prefetch(&separate_[slot_[v]]);
+    prefetch(&separate_[slot_[v]].weight);
+  }
+  if (!at_seam || !edge.is_listed()) return;
+  for (const std::uint32_t half_edge : edge.half_edges) {
+    if (half_edge == kInvalid) continue;
+    prefetch(&mesh_.faces[half_edge / 3]);
+    prefetch(&state_.channels.front().corner_value[half_edge]);
+  }
+}
+
+void EdgeCost::fetch_joined(std::uint32_t e) const {
+  const CollapseEdge& edge = mesh_.edges[e];
+  const auto [a, b] = edge.ends;
+  if ((slot_[a] == kInvalid && slot_[b] == kInvalid) || !edge.is_listed()) return;
+  for (const std::uint32_t half_edge : edge.half_edges) {
+    if (half_edge == kInvalid) continue;
+    for (const Channel& channel : state_.channels) {
+      if (channel.kind != ChannelKind::fitted) continue;
+      for (const std::uint32_t c : {half_edge, CollapseMesh::next(half_edge)}) {
+        if (channel.corner_value[c] != kInvalid) fetch_value(channel, channel.corner_value[c]);
+      }
+    }
+  }
+}
+
+void EdgeCost::fetch_value(const Channel& channel, std::uint32_t value) const {
+  const float* const quadric = channel.value_quadric(value);
+  prefetch(quadric);
+  prefetch(quadric + attribute_stride(channel.fit_width) - 1);
+}
+
+Candidate EdgeCost::best_place(std::uint32_t e, const Quadric& q) const {
+  const auto [a, b] = mesh_.edges[e].ends;
   if (placement_ == Placement::optimal && !mesh_.vertices[a].locked && !mesh_.vertices[b].locked) {
     const Vec3d pa = mesh_.position(a), pb = mesh_.position(b);
     Candidate best;
@@ -210,7 +266,7 @@ Candidate EdgeCost::best_place(std::uint32_t a, std::uint32_t b, const Quadric& 
     }
   }
   std::array<Candidate, 3> all;
-  return fallbacks(a, b, q, all.data()) > 0 ? all[0] : Candidate{};
+  return fallbacks(e, q, all.data()) > 0 ? all[0] : Candidate{};
 }
 
 }  // namespace fovea

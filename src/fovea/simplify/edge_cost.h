@@ -35,13 +35,19 @@ class EdgeCost {
   /// else becomes the best for the position.
   Quadric separate(const Channel& channel, std::uint32_t v, std::uint32_t value) const;
 
-  /// The error over the position of the vertex that the edge a–b collapses to. O(valence) at seams, else
-  /// O(1).
-  Quadric quadric(std::uint32_t a, std::uint32_t b) const;
+  /// The error over the position of the vertex that edge e collapses to. O(1), or O(valence) where more
+  /// than two triangles meet at a seam.
+  Quadric quadric(std::uint32_t e) const;
   /// The least of `q`, or the best of `fallbacks` where it has none near the edge.
-  Candidate best_place(std::uint32_t a, std::uint32_t b, const Quadric& q) const;
+  Candidate best_place(std::uint32_t e, const Quadric& q) const;
   /// The ends of the edge, as far as they may move, and its middle: cheapest first. At most three.
-  std::size_t fallbacks(std::uint32_t a, std::uint32_t b, const Quadric& q, Candidate* out) const;
+  std::size_t fallbacks(std::uint32_t e, const Quadric& q, Candidate* out) const;
+
+  /// Starts to load what `quadric(e)` will read, in steps that each need what the one before fetched: the
+  /// ends, their values and what lies at a seam, the values that join there.
+  void fetch_ends(std::uint32_t e) const;
+  void fetch_values(std::uint32_t e) const;
+  void fetch_joined(std::uint32_t e) const;
 
  private:
   template <int Width>
@@ -50,6 +56,8 @@ class EdgeCost {
   template <int Width>
   void settle_joined(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
                      const EdgeCorners& corners) const;
+
+  void fetch_value(const Channel& channel, std::uint32_t value) const;
 
   const CollapseState& state_;
   const CollapseMesh& mesh_;

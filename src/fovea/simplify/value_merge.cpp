@@ -6,13 +6,13 @@
 
 namespace fovea {
 
-void ValueMerge::plan(std::uint32_t a, std::uint32_t b, Vec3d p) {
+void ValueMerge::plan(std::uint32_t e, std::uint32_t a, std::uint32_t b, Vec3d p) {
   const Vec3d pa = state_.mesh.position(a), edge = state_.mesh.position(b) - pa;
   const double l2 = length_squared(edge);
   along_ = l2 > 0 ? static_cast<float>(std::clamp(dot(p - pa, edge) / l2, 0.0, 1.0)) : 0.5f;
   position_ = p;
   slot_ = state_.slot_of_vertex(a);
-  const EdgeCorners corners = state_.mesh.edge_corners(a, b);
+  const EdgeCorners corners = state_.mesh.edge_corners(e, a);
   for (std::size_t i = 0; i < plans_.size(); ++i) {
     const Channel& channel = state_.channels[i];
     Plan& plan = plans_[i];

@@ -16,8 +16,8 @@ class ValueMerge {
   ValueMerge(CollapseState& state, Placement placement)
       : state_(state), placement_(placement), plans_(state.channels.size()) {}
 
-  /// Works out the classes and new values of every channel for the merged vertex at `p`.
-  void plan(std::uint32_t a, std::uint32_t b, Vec3d p);
+  /// Works out the classes and new values of every channel for edge e, from a to b, merged at `p`.
+  void plan(std::uint32_t e, std::uint32_t a, std::uint32_t b, Vec3d p);
   /// The planned numbers of a value that belongs to a or b.
   const float* planned(std::size_t channel, std::uint32_t value) const;
 
