@@ -354,8 +354,8 @@ void Engine::commit(std::uint32_t e, const Candidate& where, double error) {
 
   CollapseStep step;
   step.mesh = m;
-  step.removed = VertexId{a - slot.first_vertex};
-  step.kept = VertexId{b - slot.first_vertex};
+  step.removed = state_.mesh_vertex[a];
+  step.kept = state_.mesh_vertex[b];
   step.moved = moved;
   if (moved) step.position = slot.to_local(where.position);
   finish_step(step, error);
@@ -374,7 +374,7 @@ void Engine::drop_face(std::uint32_t f) {
     mesh_.unlink_corner(c);
   }
   mesh_.kill_face(f);
-  outcome_.record.removed_faces.push_back(FaceId{f - state_.slots[state_.slot_of_face(f)].first_face});
+  outcome_.record.removed_faces.push_back(state_.mesh_face[f]);
 }
 
 void Engine::drop_shared_faces(std::uint32_t a, std::uint32_t b) {

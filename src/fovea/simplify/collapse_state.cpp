@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fovea/base/parallel.h"
+#include "fovea/simplify/local_order.h"
 
 namespace fovea {
 
@@ -68,6 +69,7 @@ class Builder {
   void make_connectivity();
   void make_channels();
   void add_layer_channels(std::size_t m);
+  void number_values(Channel& channel, std::size_t m, const AttributeLayer& layer);
   void add_morph_channel(std::size_t m);
   Channel& channel_for(const AttributeLayer& layer);
   void append_values(Channel& channel, std::size_t m, const std::vector<const AttributeLayer*>& layers,
@@ -116,18 +118,26 @@ void Builder::place_meshes(std::span<const double> scales, double diagonal) {
   }
   state_.mesh.vertices.reserve(vertices);
   state_.mesh.faces.reserve(faces);
+  state_.mesh_vertex.reserve(vertices);
+  state_.mesh_face.reserve(faces);
 }
 
 void Builder::make_connectivity() {
   CollapseMesh& all = state_.mesh;
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshSlot& slot = state_.slots[m];
-    for (const auto& t : meshes_[m]->triangles) {
-      CollapseFace& face = all.faces.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) face.vertex[k] = slot.first_vertex + t[k].value;
+    const LocalOrder order = local_order(*meshes_[m]);
+    std::vector<std::uint32_t> vertex_of(order.vertices.size());
+    for (const VertexId v : order.vertices) {
+      vertex_of[v.index()] = static_cast<std::uint32_t>(all.vertices.size());
+      all.vertices.emplace_back().position = Vec3f(slot.to_engine(meshes_[m]->positions[v.index()]));
     }
-    for (const Vec3f& p : meshes_[m]->positions)
-      all.vertices.emplace_back().position = Vec3f(slot.to_engine(p));
+    for (const FaceId f : order.faces) {
+      const auto& t = meshes_[m]->triangles[f.index()];
+      all.faces.push_back({{vertex_of[t[0].index()], vertex_of[t[1].index()], vertex_of[t[2].index()]}, {}});
+    }
+    state_.mesh_vertex.insert(state_.mesh_vertex.end(), order.vertices.begin(), order.vertices.end());
+    state_.mesh_face.insert(state_.mesh_face.end(), order.faces.begin(), order.faces.end());
   }
   all.link();
 }
@@ -205,7 +215,6 @@ void Builder::make_channels() {
   }
   for (Channel& channel : state_.channels) {
     channel.slices.resize(meshes_.size());
-    channel.first_value.assign(meshes_.size(), 0);
     channel.scale.assign(meshes_.size(), 1.0);
   }
   make_columns();
@@ -244,55 +253,71 @@ void Builder::add_layer_channels(std::size_t m) {
 /// Appends the values and corner map of layers that share one map as one run of the channel.
 void Builder::append_values(Channel& channel, std::size_t m, const std::vector<const AttributeLayer*>& layers,
                             const std::vector<std::uint32_t>& layer_indices) {
-  const std::size_t first =
-      channel.width > 0 ? channel.values.size() / static_cast<std::size_t>(channel.width) : 0;
-  channel.first_value[m] = static_cast<std::uint32_t>(first);
   int offset = 0;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const int width = layers[i]->width * (1 + static_cast<int>(layers[i]->morphs.size()));
     channel.slices[m].push_back({layer_indices[i], offset, width, layers[i]->semantic});
     offset += width;
   }
-  const std::size_t count = layers.front()->size();
-  channel.values.resize((first + count) * static_cast<std::size_t>(channel.width), 0.0f);
+  const std::size_t first = channel.layer_value.size();
+  number_values(channel, m, *layers.front());
+  channel.values.resize(channel.layer_value.size() * static_cast<std::size_t>(channel.width), 0.0f);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const AttributeLayer& layer = *layers[i];
     const auto width = static_cast<std::size_t>(layer.width);
-    for (std::size_t v = 0; v < count; ++v) {
-      float* out = channel.value(static_cast<std::uint32_t>(first + v)) + channel.slices[m][i].offset;
-      out = std::copy_n(layer.values.data() + v * width, width, out);
+    for (std::size_t value = first; value < channel.layer_value.size(); ++value) {
+      const ValueId id = channel.layer_value[value];
+      float* out = channel.value(static_cast<std::uint32_t>(value)) + channel.slices[m][i].offset;
+      out = std::copy_n(layer.value(id), width, out);
       for (const auto& morph : layer.morphs) {
-        if (!morph.empty()) std::copy_n(morph.data() + v * width, width, out);
+        if (!morph.empty()) std::copy_n(morph.data() + id.index() * width, width, out);
         out += width;
       }
     }
   }
-  std::size_t corner = 3 * std::size_t{state_.slots[m].first_face};
-  for (const ValueId value : layers.front()->corner_value) {
-    if (value.valid()) channel.corner_value[corner] = static_cast<std::uint32_t>(first) + value.value;
-    ++corner;
+}
+
+/// Numbers the values of a layer of mesh m in the order in which its triangles use them.
+void Builder::number_values(Channel& channel, std::size_t m, const AttributeLayer& layer) {
+  std::vector<std::uint32_t> number(layer.size(), kInvalid);
+  const std::size_t first_face = state_.slots[m].first_face;
+  channel.layer_value.reserve(channel.layer_value.size() + layer.size());
+  for (std::size_t f = first_face; f < first_face + meshes_[m]->face_count(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const ValueId id = layer.corner_value[corner(state_.mesh_face[f], k).index()];
+      if (!id.valid()) continue;
+      std::uint32_t& n = number[id.index()];
+      if (n == kInvalid) {
+        n = static_cast<std::uint32_t>(channel.layer_value.size());
+        channel.layer_value.push_back(id);
+      }
+      channel.corner_value[3 * f + static_cast<std::size_t>(k)] = n;
+    }
   }
 }
 
+/// Position morphs are the only value of their vertex.
 void Builder::add_morph_channel(std::size_t m) {
   const TriMesh& mesh = *meshes_[m];
   if (mesh.target_count() == 0) return;
   Channel& channel = state_.channels.back();
-  const std::size_t first = channel.values.size() / static_cast<std::size_t>(channel.width);
-  channel.first_value[m] = static_cast<std::uint32_t>(first);
+  const MeshSlot& slot = state_.slots[m];
+  const std::size_t first = channel.layer_value.size();
   channel.slices[m].push_back({kInvalid, 0, 3 * static_cast<int>(mesh.target_count()), Semantic::custom});
   channel.values.resize((first + mesh.vertex_count()) * static_cast<std::size_t>(channel.width), 0.0f);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const VertexId id = state_.mesh_vertex[slot.first_vertex + v];
+    channel.layer_value.push_back(ValueId{id.index()});
     float* out = channel.value(static_cast<std::uint32_t>(first + v));
     for (const auto& morph : mesh.position_morphs) {
-      *out++ = morph[v].x;
-      *out++ = morph[v].y;
-      *out++ = morph[v].z;
+      *out++ = morph[id.index()].x;
+      *out++ = morph[id.index()].y;
+      *out++ = morph[id.index()].z;
     }
   }
-  std::size_t corner = 3 * std::size_t{state_.slots[m].first_face};
-  for (const auto& t : mesh.triangles) {
-    for (const VertexId v : t) channel.corner_value[corner++] = static_cast<std::uint32_t>(first) + v.value;
+  for (std::size_t c = 3 * std::size_t{slot.first_face}; c < 3 * (slot.first_face + mesh.face_count()); ++c) {
+    const std::uint32_t v = state_.mesh.vertex(static_cast<std::uint32_t>(c));
+    channel.corner_value[c] = static_cast<std::uint32_t>(first) + v - slot.first_vertex;
   }
 }
 
@@ -301,8 +326,8 @@ void Builder::make_locks() {
     if (importance_.empty() || importance_[m] == nullptr || importance_[m]->empty()) continue;
     if (importance_weight_.empty()) importance_weight_.assign(state_.mesh.vertices.size(), 1.0);
     for (std::size_t v = 0; v < importance_[m]->size(); ++v) {
-      const float w = importance_[m]->values()[v];
       const std::size_t at = state_.slots[m].first_vertex + v;
+      const float w = importance_[m]->values()[state_.mesh_vertex[at].index()];
       if (std::isinf(w)) {
         state_.mesh.vertices[at].locked = 1;
       } else {
@@ -482,7 +507,7 @@ bool Builder::is_seam(std::uint32_t a, std::uint32_t b) const {
   }
   const std::uint32_t m = state_.slot_of_face(a / 3);
   const auto part = [&](std::uint32_t c) {
-    return meshes_[m]->face_part[c / 3 - state_.slots[m].first_face];
+    return meshes_[m]->face_part[state_.mesh_face[c / 3].index()];
   };
   return part(a) != part(b);
 }

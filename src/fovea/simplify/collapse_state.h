@@ -44,8 +44,8 @@ class Column {
   std::size_t channels_ = 0;
 };
 
-/// An attribute of all meshes together: the same values and corner map as the layers, in one array
-/// each, with what the engine needs to know to fit them.
+/// An attribute of all meshes together: the values and corner maps of the layers, in one array each, with
+/// what the engine needs to know to fit them. Values are in the order in which triangles use them.
 struct Channel {
   ChannelKind kind = ChannelKind::fitted;
   Semantic semantic = Semantic::custom;
@@ -59,7 +59,7 @@ struct Channel {
   std::vector<float> values;   ///< [#values × width], in the layer's units.
   std::vector<float> quadric;  ///< [#values × attribute_stride(fit_width)] if fitted.
   std::vector<std::vector<ChannelSlice>> slices;  ///< [#meshes]; empty where the mesh lacks it.
-  std::vector<std::uint32_t> first_value;         ///< [#meshes]
+  std::vector<ValueId> layer_value;               ///< [#values], of its mesh's layers.
   std::vector<double> scale;  ///< [#meshes], from the layer's units to lengths of the engine.
 
   static constexpr std::uint32_t kMany = kInvalid - 1;
@@ -88,8 +88,8 @@ struct VanishCandidate {
   double error = 0;  ///< Half the diagonal of its box.
 };
 
-/// All that the engine works on: the meshes of a scene in one set of arrays, lengths in units of the
-/// scene's diagonal so that costs of different meshes compare.
+/// All that the engine works on: the meshes of a scene in one set of arrays, each in a local order
+/// (local_order.h), lengths in units of the scene's diagonal so that costs of different meshes compare.
 struct CollapseState {
   CollapseState() = default;
   CollapseState(CollapseState&&) = default;  // not copied: channels point into `columns`
@@ -99,6 +99,8 @@ struct CollapseState {
   std::vector<Channel> channels;
   std::vector<std::uint32_t> columns;  // of the channels: [#F × 3][#channels], then [#V][#channels]
   std::vector<MeshSlot> slots;         // [#meshes]
+  std::vector<VertexId> mesh_vertex;   // [#V], in its mesh
+  std::vector<FaceId> mesh_face;       // [#F], in its mesh
   FaceComponents components;
   std::vector<VanishCandidate> vanish;  // [#components]
 

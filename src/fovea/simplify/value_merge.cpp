@@ -132,7 +132,7 @@ const float* ValueMerge::planned(std::size_t channel, std::uint32_t value) const
 /// Sets the numbers of class `root`, and writes down which values it joined and the numbers if they are new.
 void ValueMerge::set_class(Channel& channel, const Plan& plan, std::uint32_t root, std::uint32_t mesh,
                            CollapseRecord& record) const {
-  const std::uint32_t first = channel.first_value[mesh], kept = plan.classes[root].kept;
+  const std::uint32_t kept = plan.classes[root].kept;
   const auto width = static_cast<std::size_t>(channel.width);
   const float* const numbers = plan.values.data() + root * width;
   const bool is_new = !std::equal(numbers, numbers + width, channel.value(kept));
@@ -141,11 +141,11 @@ void ValueMerge::set_class(Channel& channel, const Plan& plan, std::uint32_t roo
     if (slice.layer != kInvalid) {
       plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
         if (entry.value != kept)
-          record.joins.push_back({slice.layer, ValueId{entry.value - first}, ValueId{kept - first}});
+          record.joins.push_back({slice.layer, channel.layer_value[entry.value], channel.layer_value[kept]});
       });
     }
     if (!is_new) continue;
-    record.writes.push_back({slice.layer, kept - first});
+    record.writes.push_back({slice.layer, channel.layer_value[kept].value});
     const float* values = numbers + slice.offset;
     record.floats.insert(record.floats.end(), values, values + slice.width);
   }
