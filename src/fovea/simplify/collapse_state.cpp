@@ -506,9 +506,7 @@ bool Builder::is_seam(std::uint32_t a, std::uint32_t b) const {
     if (channel.corner_value[CollapseMesh::next(a)] != channel.corner_value[b_at_w]) return true;
   }
   const std::uint32_t m = state_.slot_of_face(a / 3);
-  const auto part = [&](std::uint32_t c) {
-    return meshes_[m]->face_part[state_.mesh_face[c / 3].index()];
-  };
+  const auto part = [&](std::uint32_t c) { return meshes_[m]->face_part[state_.mesh_face[c / 3].index()]; };
   return part(a) != part(b);
 }
 
