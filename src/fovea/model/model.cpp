@@ -7,12 +7,13 @@
 
 namespace fovea {
 
-std::vector<Mat4> world_transforms(const Model& model) {
-  const std::size_t count = model.nodes.size();
+std::vector<Mat4> world_transforms(const Model& model) { return world_transforms(model.nodes); }
+
+std::vector<Mat4> world_transforms(const std::vector<Node>& nodes) {
+  const std::size_t count = nodes.size();
   std::vector<int> parent(count, -1);
   for (std::size_t n = 0; n < count; ++n) {
-    for (const int child : model.nodes[n].children)
-      parent[static_cast<std::size_t>(child)] = static_cast<int>(n);
+    for (const int child : nodes[n].children) parent[static_cast<std::size_t>(child)] = static_cast<int>(n);
   }
   std::vector<Mat4> world(count);
   std::vector<char> done(count, 0);
@@ -26,7 +27,7 @@ std::vector<Mat4> world_transforms(const Model& model) {
     }
     for (; !chain.empty(); chain.pop_back()) {
       const std::size_t at = chain.back();
-      const Mat4 local = model.nodes[at].local();
+      const Mat4 local = nodes[at].local();
       world[at] = parent[at] < 0 ? local : world[static_cast<std::size_t>(parent[at])] * local;
       done[at] = 1;
     }
@@ -34,9 +35,6 @@ std::vector<Mat4> world_transforms(const Model& model) {
   return world;
 }
 
-namespace {
-
-/// Which nodes belong to the default scene; all if the model has none.
 std::vector<bool> shown_nodes(const Model& model) {
   const bool has_scene = !model.scenes.empty();
   std::vector<bool> shown(model.nodes.size(), !has_scene);
@@ -51,6 +49,8 @@ std::vector<bool> shown_nodes(const Model& model) {
   }
   return shown;
 }
+
+namespace {
 
 /// Where a skin puts a mesh in the rest pose, told by its first joint.
 Mat4 skin_transform(const Skin& skin, const std::vector<Mat4>& world) {

@@ -119,6 +119,10 @@ struct Model {
 
 /// World transform of every node [#nodes] (through the hierarchy; each node has one parent at most).
 std::vector<Mat4> world_transforms(const Model& model);
+std::vector<Mat4> world_transforms(const std::vector<Node>& nodes);
+
+/// Which nodes belong to the default scene (the first if none is named); all if the model has no scenes.
+std::vector<bool> shown_nodes(const Model& model);
 
 /// For each mesh the world transforms of its instances, over all nodes that show it, in node order:
 /// of the default scene (the first if none is named), or of all nodes if there are no scenes. A mesh

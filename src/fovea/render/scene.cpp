@@ -1,0 +1,155 @@
+#include "fovea/render/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "fovea/base/error.h"
+#include "fovea/base/parallel.h"
+#include "fovea/io/image_codec.h"
+
+namespace fovea {
+
+namespace {
+
+/// Numbers the mip maps that materials ask for, and makes them.
+class MipMaps {
+ public:
+  explicit MipMaps(const Model& model) : model_(model) {}
+
+  std::optional<SceneTexture> use(const std::optional<TextureRef>& ref, ColorEncoding encoding) {
+    if (!ref || ref->texture < 0) return std::nullopt;
+    const Texture& texture = model_.textures[static_cast<std::size_t>(ref->texture)];
+    if (texture.image < 0) return std::nullopt;
+    SceneTexture result;
+    const auto [entry, is_new] =
+        number_.try_emplace({texture.image, encoding}, static_cast<int>(wanted_.size()));
+    if (is_new) wanted_.push_back({texture.image, encoding});
+    result.mip_map = entry->second;
+    result.uv_set = ref->uv_set;
+    if (texture.sampler >= 0) result.sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
+    if (ref->transform) set_transform(result, *ref->transform);
+    return result;
+  }
+
+  std::vector<MipMap> make(Context& context) const {
+    std::vector<MipMap> maps(wanted_.size());
+    parallel_for(context, wanted_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const EncodedImage& image = model_.images[static_cast<std::size_t>(wanted_[i].first)];
+        try {
+          maps[i] = MipMap(decode_image(image.bytes), wanted_[i].second);
+        } catch (const Error& error) {
+          context.report("image-not-shown", error.message(), "/images/" + std::to_string(wanted_[i].first));
+        }
+      }
+    });
+    return maps;
+  }
+
+ private:
+  static void set_transform(SceneTexture& texture, const TextureTransform& t) {
+    // As the extension gives the matrix: offset · rotation · scale.
+    const double c = std::cos(t.rotation_rad), s = std::sin(t.rotation_rad);
+    texture.xx = static_cast<float>(c * t.scale.x);
+    texture.xy = static_cast<float>(s * t.scale.y);
+    texture.x = static_cast<float>(t.offset.x);
+    texture.yx = static_cast<float>(-s * t.scale.x);
+    texture.yy = static_cast<float>(c * t.scale.y);
+    texture.y = static_cast<float>(t.offset.y);
+  }
+
+  const Model& model_;
+  std::map<std::pair<int, ColorEncoding>, int> number_;
+  std::vector<std::pair<int, ColorEncoding>> wanted_;  // image and encoding of each mip map
+};
+
+SceneMaterial scene_material(const Material& m, MipMaps& maps) {
+  SceneMaterial s;
+  const auto f = [](double x) { return static_cast<float>(x); };
+  const auto& c = m.base_color_factor;
+  s.base_color = {f(c[0]), f(c[1]), f(c[2]), f(c[3])};
+  s.base_color_texture = maps.use(m.base_color, ColorEncoding::srgb);
+  s.metallic = f(m.metallic_factor);
+  s.roughness = f(m.roughness_factor);
+  s.metallic_roughness_texture = maps.use(m.metallic_roughness, ColorEncoding::linear);
+  s.normal_texture = maps.use(m.normal, ColorEncoding::linear);
+  s.normal_scale = f(m.normal_scale);
+  s.occlusion_texture = maps.use(m.occlusion, ColorEncoding::linear);
+  s.occlusion_strength = f(m.occlusion_strength);
+  s.emission = {f(m.emissive_factor[0]), f(m.emissive_factor[1]), f(m.emissive_factor[2]), 1};
+  s.emissive_texture = maps.use(m.emissive, ColorEncoding::srgb);
+  s.alpha_mode = m.alpha_mode;
+  s.alpha_cutoff = f(m.alpha_cutoff);
+  s.double_sided = m.double_sided;
+  s.unlit = m.unlit;
+  return s;
+}
+
+/// Takes back textures whose image could not be decoded.
+void drop_missing(SceneMaterial& material, const std::vector<MipMap>& maps) {
+  for (auto* texture : {&material.base_color_texture, &material.metallic_roughness_texture,
+                        &material.normal_texture, &material.occlusion_texture, &material.emissive_texture}) {
+    if (*texture && maps[static_cast<std::size_t>((*texture)->mip_map)].level_count() == 0) texture->reset();
+  }
+}
+
+Sphere sphere_around(const std::vector<SceneMesh>& meshes) {
+  Box box;
+  for (const SceneMesh& mesh : meshes) {
+    for (const Vec3f& p : mesh.surface.positions) box.add(Vec3d(p));
+  }
+  Sphere sphere;
+  sphere.center = box.center();
+  double farthest2 = 0;
+  for (const SceneMesh& mesh : meshes) {
+    for (const Vec3f& p : mesh.surface.positions)
+      farthest2 = std::max(farthest2, length_squared(Vec3d(p) - sphere.center));
+  }
+  sphere.radius = std::sqrt(farthest2);
+  return sphere;
+}
+
+}  // namespace
+
+RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context) {
+  RenderScene scene;
+  MipMaps maps(model);
+  for (const Material& material : model.materials) scene.materials.push_back(scene_material(material, maps));
+  scene.materials.push_back(scene_material(Material{}, maps));
+  scene.mip_maps = maps.make(context);
+  for (SceneMaterial& material : scene.materials) drop_missing(material, scene.mip_maps);
+
+  const std::vector<Instance> shown = instances(model, pose);
+  for (const Instance& instance : shown) {
+    SceneMesh mesh;
+    mesh.mesh = &model.meshes[instance.mesh].surface;
+    mesh.mesh_index = static_cast<std::uint32_t>(instance.mesh);
+    mesh.first_triangle = static_cast<std::uint32_t>(scene.triangle_count);
+    for (const Part& part : mesh.mesh->parts) {
+      mesh.part_material.push_back(
+          static_cast<std::uint32_t>(part.material >= 0 ? part.material : model.materials.size()));
+    }
+    scene.triangle_count += mesh.mesh->face_count();
+    if (scene.triangle_count >= std::numeric_limits<std::uint32_t>::max())
+      throw Error(ErrorKind::limit, "more triangles are shown than can be drawn", "scene");
+    scene.meshes.push_back(std::move(mesh));
+  }
+  parallel_for(context, shown.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) scene.meshes[i].surface = posed_surface(model, pose, shown[i]);
+  });
+  scene.sphere = sphere_around(scene.meshes);
+  return scene;
+}
+
+TriangleOrigin origin(const RenderScene& scene, std::uint32_t triangle) {
+  const auto after =
+      std::upper_bound(scene.meshes.begin(), scene.meshes.end(), triangle,
+                       [](std::uint32_t t, const SceneMesh& mesh) { return t < mesh.first_triangle; });
+  const auto mesh = static_cast<std::uint32_t>(after - scene.meshes.begin()) - 1;
+  return {mesh, FaceId{triangle - scene.meshes[mesh].first_triangle}};
+}
+
+}  // namespace fovea

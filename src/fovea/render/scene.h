@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/model/model.h"
+#include "fovea/render/mip_map.h"
+#include "fovea/render/view.h"
+#include "fovea/surface/pose.h"
+
+namespace fovea {
+
+/// A texture as a material uses it, ready to be looked up.
+struct SceneTexture {
+  int mip_map = -1;  ///< Index into RenderScene::mip_maps.
+  int uv_set = 0;
+  Sampler sampler;
+  /// uv' = (xx u + xy v + x, yx u + yy v + y), from KHR_texture_transform.
+  float xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;
+};
+
+/// A material as the shading reads it.
+struct SceneMaterial {
+  Rgba base_color;  ///< Light.
+  std::optional<SceneTexture> base_color_texture;
+  float metallic = 1, roughness = 1;
+  std::optional<SceneTexture> metallic_roughness_texture;
+  std::optional<SceneTexture> normal_texture;
+  float normal_scale = 1;
+  std::optional<SceneTexture> occlusion_texture;
+  float occlusion_strength = 1;
+  Rgba emission{0, 0, 0, 1};
+  std::optional<SceneTexture> emissive_texture;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;
+  bool unlit = false;
+};
+
+/// A mesh as one instance shows it.
+struct SceneMesh {
+  const TriMesh* mesh = nullptr;
+  std::uint32_t mesh_index = 0;      ///< In the model.
+  std::uint32_t first_triangle = 0;  ///< Number of its first triangle in the scene.
+  PosedSurface surface;
+  std::vector<std::uint32_t> part_material;  ///< [#parts], into RenderScene::materials.
+};
+
+/// What a picture is drawn of: the instances of a model in a pose, with decoded textures. Triangles are
+/// numbered through: instance by instance, each in the order of its mesh. Refers to the model, which must
+/// outlive it.
+struct RenderScene {
+  std::vector<SceneMesh> meshes;
+  std::vector<SceneMaterial> materials;  ///< The model's, then glTF's default one.
+  std::vector<MipMap> mip_maps;          ///< Of images that materials use, per encoding.
+  std::uint64_t triangle_count = 0;
+  Sphere sphere;  ///< Around the centre of the box of all positions.
+};
+
+/// Poses all instances and decodes the images in parallel. Images that cannot be decoded (KTX2, damaged)
+/// count as absent and are reported ("image-not-shown"). Throws Error(limit) beyond 2³² − 1 triangles.
+RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context);
+
+/// Where a triangle of the scene comes from.
+struct TriangleOrigin {
+  std::uint32_t mesh = 0;  ///< Index into RenderScene::meshes.
+  FaceId face;
+};
+TriangleOrigin origin(const RenderScene& scene, std::uint32_t triangle);
+
+}  // namespace fovea

@@ -1,0 +1,202 @@
+#include "fovea/render/shade.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/render/light_rig.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr std::size_t kCorners = 3;
+
+Vec3f mix(const SurfacePoint& p, Vec3f a, Vec3f b, Vec3f c) {
+  return a * p.weight[0] + b * p.weight[1] + c * p.weight[2];
+}
+
+/// The values of a layer at the corners of a face; null if the face has none.
+std::array<const float*, 3> corner_values(const AttributeLayer* layer, FaceId face) {
+  std::array<const float*, 3> values{};
+  if (layer == nullptr) return values;
+  for (int k = 0; k < 3; ++k) {
+    const ValueId id = layer->corner_value[corner(face, k).index()];
+    if (!id.valid()) return {};
+    values[static_cast<std::size_t>(k)] = layer->value(id);
+  }
+  return values;
+}
+
+Vec2f mix_uv(const std::array<float, 3>& weights, const std::array<const float*, 3>& uv) {
+  Vec2f sum;
+  for (std::size_t k = 0; k < kCorners; ++k) sum = sum + Vec2f{uv[k][0], uv[k][1]} * weights[k];
+  return sum;
+}
+
+Vec2f transform_uv(const SceneTexture& t, Vec2f uv) {
+  return {t.xx * uv.x + t.xy * uv.y, t.yx * uv.x + t.yy * uv.y};
+}
+
+}  // namespace
+
+TriangleShader::TriangleShader(const RenderScene& scene, const Projection& projection, int anisotropy,
+                               std::uint32_t triangle)
+    : scene_(scene), projection_(projection), anisotropy_(anisotropy) {
+  const TriangleOrigin from = origin(scene, triangle);
+  mesh_ = &scene.meshes[from.mesh];
+  face_ = from.face;
+  material_ = &scene.materials[mesh_->part_material[mesh_->mesh->face_part[face_.index()]]];
+  std::array<Vec3d, 3> h;
+  for (std::size_t k = 0; k < kCorners; ++k) {
+    positions_[k] = mesh_->surface.positions[mesh_->mesh->triangles[face_.index()][k].index()];
+    h[k] = projection.view().to_eye(Vec3d(positions_[k]));
+    if (!projection.view().perspective) h[k].z = 1;
+  }
+  for (std::size_t k = 0; k < kCorners; ++k) edges_[k] = cross(h[(k + 1) % 3], h[(k + 2) % 3]);
+  sum_ = edges_[0] + edges_[1] + edges_[2];
+  const Vec3d p0(positions_[0]);
+  face_normal_ = Vec3f(normalized(cross(Vec3d(positions_[1]) - p0, Vec3d(positions_[2]) - p0)) *
+                       (mesh_->surface.mirrored ? -1.0 : 1.0));
+}
+
+SurfacePoint TriangleShader::at(double x, double y) const {
+  const Vec2d plane = projection_.to_plane(x, y);
+  const Vec3d d{plane.x, plane.y, 1};
+  const double total = dot(sum_, d), inverse = total != 0 ? 1 / total : 0;
+  const double pixel = projection_.pixel() * inverse;
+  SurfacePoint point;
+  for (std::size_t k = 0; k < kCorners; ++k) {
+    const double weight = dot(edges_[k], d) * inverse;
+    point.weight[k] = static_cast<float>(weight);
+    point.dx[k] = static_cast<float>((edges_[k].x - weight * sum_.x) * pixel);
+    point.dy[k] = static_cast<float>((weight * sum_.y - edges_[k].y) * pixel);
+  }
+  return point;
+}
+
+Rgba TriangleShader::look_up(const SceneTexture& texture, const SurfacePoint& point) const {
+  const auto uv = corner_values(mesh_->mesh->find(Semantic::uv, texture.uv_set), face_);
+  if (uv[0] == nullptr) return {1, 1, 1, 1};
+  const Vec2f at = transform_uv(texture, mix_uv(point.weight, uv)) + Vec2f{texture.x, texture.y};
+  const UvSlopes slopes{transform_uv(texture, mix_uv(point.dx, uv)),
+                        transform_uv(texture, mix_uv(point.dy, uv))};
+  return scene_.mip_maps[static_cast<std::size_t>(texture.mip_map)].sample(at, slopes, texture.sampler,
+                                                                           anisotropy_);
+}
+
+Rgba TriangleShader::base_color(const SurfacePoint& point) const {
+  Rgba color = material_->base_color;
+  if (material_->base_color_texture) color = color * look_up(*material_->base_color_texture, point);
+  const AttributeLayer* layer = mesh_->mesh->find(Semantic::color, 0);
+  const auto values = corner_values(layer, face_);
+  if (values[0] != nullptr) {
+    Rgba vertex{0, 0, 0, layer->width > 3 ? 0.0f : 1.0f};
+    for (std::size_t k = 0; k < kCorners; ++k) {
+      vertex =
+          vertex + Rgba{values[k][0], values[k][1], values[k][2], layer->width > 3 ? values[k][3] : 0.0f} *
+                       point.weight[k];
+    }
+    color = color * vertex;
+  }
+  if (material_->alpha_mode == AlphaMode::opaque) color.a = 1;
+  color.a = std::clamp(color.a, 0.0f, 1.0f);
+  return color;
+}
+
+float TriangleShader::alpha(const SurfacePoint& point) const { return base_color(point).a; }
+
+Vec3f TriangleShader::to_eye(const SurfacePoint& point) const {
+  if (!projection_.view().perspective) return Vec3f(projection_.view().back);
+  return Vec3f(
+      normalized(projection_.view().eye - Vec3d(mix(point, positions_[0], positions_[1], positions_[2]))));
+}
+
+/// Bends a normal by the material's normal map. Without tangents of its own a triangle has those along which
+/// its texture coordinates run.
+Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point) const {
+  const SceneTexture& texture = *material_->normal_texture;
+  const auto uv = corner_values(mesh_->mesh->find(Semantic::uv, texture.uv_set), face_);
+  if (uv[0] == nullptr) return normal;
+  const AttributeLayer* const layer = mesh_->mesh->find(Semantic::tangent);
+  const auto signs = corner_values(layer, face_);
+  Vec3f tangent;
+  float side = 1;
+  if (signs[0] != nullptr) {
+    std::array<Vec3f, 3> t;
+    for (int k = 0; k < 3; ++k) {
+      t[static_cast<std::size_t>(k)] =
+          mesh_->surface.tangents[layer->corner_value[corner(face_, k).index()].index()];
+    }
+    tangent = mix(point, t[0], t[1], t[2]);
+    side = signs[0][3] < 0 ? -1.0f : 1.0f;
+    if (mesh_->surface.mirrored) side = -side;
+  } else {
+    const Vec2f a = transform_uv(texture, Vec2f{uv[1][0], uv[1][1]} - Vec2f{uv[0][0], uv[0][1]}),
+                b = transform_uv(texture, Vec2f{uv[2][0], uv[2][1]} - Vec2f{uv[0][0], uv[0][1]});
+    const float area = cross(a, b);
+    const Vec3f ea = positions_[1] - positions_[0], eb = positions_[2] - positions_[0];
+    tangent = (ea * b.y - eb * a.y) * (area < 0 ? -1.0f : 1.0f);
+    // v points down, green points up: with u to the right that is a right-handed frame.
+    side = (area < 0) == mesh_->surface.mirrored ? -1.0f : 1.0f;
+  }
+  tangent = tangent - normal * dot(normal, tangent);
+  const float l = length(tangent);
+  if (!(l > 0)) return normal;
+  tangent = tangent / l;
+  const Vec3f bitangent = cross(normal, tangent) * side;
+  const Rgba texel = look_up(texture, point);
+  const float x = (2 * texel.r - 1) * material_->normal_scale,
+              y = (2 * texel.g - 1) * material_->normal_scale, z = 2 * texel.b - 1;
+  const Vec3f bent = tangent * x + bitangent * y + normal * z;
+  return length(bent) > 0 ? normalized(bent) : normal;
+}
+
+Vec3f TriangleShader::normal(const SurfacePoint& point, bool mapped) const {
+  Vec3f n = face_normal_;
+  const AttributeLayer* const layer = mesh_->mesh->find(Semantic::normal);
+  const auto values = corner_values(layer, face_);
+  if (values[0] != nullptr) {
+    std::array<Vec3f, 3> at;
+    for (int k = 0; k < 3; ++k) {
+      at[static_cast<std::size_t>(k)] =
+          mesh_->surface.normals[layer->corner_value[corner(face_, k).index()].index()];
+    }
+    const Vec3f smooth = mix(point, at[0], at[1], at[2]);
+    const float l = length(smooth);
+    if (l > 1e-6f) n = smooth / l;
+  }
+  if (mapped && material_->normal_texture) n = map_normal(n, point);
+  // Seen from behind, the surface is what is seen: its normals turn with its face.
+  return dot(face_normal_, to_eye(point)) < 0 ? -n : n;
+}
+
+Rgba TriangleShader::lit(const SurfacePoint& point) const {
+  const Rgba color = base_color(point);
+  if (material_->unlit) return color;
+  SurfaceLook look;
+  look.base_color = color;
+  look.metallic = material_->metallic;
+  look.roughness = material_->roughness;
+  if (material_->metallic_roughness_texture) {
+    const Rgba texel = look_up(*material_->metallic_roughness_texture, point);
+    look.roughness *= texel.g;
+    look.metallic *= texel.b;
+  }
+  if (material_->occlusion_texture) {
+    const float seen = look_up(*material_->occlusion_texture, point).r;
+    look.occlusion = 1 + material_->occlusion_strength * (seen - 1);
+  }
+  look.emission = material_->emission;
+  if (material_->emissive_texture)
+    look.emission = look.emission * look_up(*material_->emissive_texture, point);
+  return light_to_eye(look, normal(point, true), to_eye(point));
+}
+
+float TriangleShader::field(const SurfacePoint& point, std::span<const float> per_vertex) const {
+  float sum = 0;
+  for (std::size_t k = 0; k < kCorners; ++k)
+    sum += per_vertex[mesh_->mesh->triangles[face_.index()][k].index()] * point.weight[k];
+  return sum;
+}
+
+}  // namespace fovea

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "fovea/render/scene.h"
+#include "fovea/render/screen.h"
+
+// Private to render: what a point of a triangle looks like.
+
+namespace fovea {
+
+/// A point of a triangle: weights of its corners, which add up to 1, and how they change from a pixel to the
+/// next to the right and the next below.
+struct SurfacePoint {
+  std::array<float, 3> weight, dx, dy;
+};
+
+/// A triangle of the scene, ready to be looked at in its points. The triangle may reach behind the eye.
+class TriangleShader {
+ public:
+  TriangleShader(const RenderScene& scene, const Projection& projection, int anisotropy,
+                 std::uint32_t triangle);
+
+  /// What is at a place of the picture (in pixels from the top left), perspective-correct.
+  SurfacePoint at(double x, double y) const;
+  const SceneMaterial& material() const { return *material_; }
+  const SceneMesh& mesh() const { return *mesh_; }
+  FaceId face() const { return face_; }
+
+  /// Base colour as light, with alpha: factor × texture × vertex colour.
+  Rgba base_color(const SurfacePoint& point) const;
+  /// Alpha alone.
+  float alpha(const SurfacePoint& point) const;
+  /// Unit vector on the side of the eye: of the surface, or as its normal map bends it.
+  Vec3f normal(const SurfacePoint& point, bool mapped) const;
+  /// Light to the eye under the rig (light_rig.h); the base colour if the material is unlit.
+  Rgba lit(const SurfacePoint& point) const;
+  /// A number per vertex of the mesh.
+  float field(const SurfacePoint& point, std::span<const float> per_vertex) const;
+
+ private:
+  Rgba look_up(const SceneTexture& texture, const SurfacePoint& point) const;
+  Vec3f to_eye(const SurfacePoint& point) const;
+  Vec3f map_normal(Vec3f normal, const SurfacePoint& point) const;
+
+  const RenderScene& scene_;
+  const Projection& projection_;
+  const int anisotropy_;
+  const SceneMesh* mesh_;
+  const SceneMaterial* material_;
+  FaceId face_;
+  std::array<Vec3d, 3> edges_;  // corner weights before division, linear on the plane of the view
+  Vec3d sum_;
+  std::array<Vec3f, 3> positions_;
+  Vec3f face_normal_;  // geometric, outward
+};
+
+}  // namespace fovea

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "fovea/render/screen.h"
+
+// Private to render: what covers the samples of a tile.
+
+namespace fovea {
+
+/// A sample of a blended triangle in front of all opaque ones.
+struct BlendedSample {
+  std::uint32_t sample = 0;  ///< In the tile.
+  float nearness = 0;
+  std::uint32_t triangle = 0;
+};
+
+/// The nearest opaque triangle at each sample of a tile, and the blended ones in front of it.
+class TileSamples {
+ public:
+  /// `column` and `row` of the tile in the grid.
+  TileSamples(const SampleGrid& grid, int column, int row);
+
+  /// Draws opaque triangles; of equally near ones the first drawn stays.
+  void draw(const ScreenTriangle& triangle);
+  /// Draws where `keep` of the sample's place in the picture (pixels) says so.
+  void draw_where(const ScreenTriangle& triangle, const std::function<bool(double x, double y)>& keep);
+  /// Notes a blended triangle. To be called after all opaque ones are drawn.
+  void blend(const ScreenTriangle& triangle, std::vector<BlendedSample>& out) const;
+
+  int width() const { return width_; }    ///< Samples.
+  int height() const { return height_; }  ///< Samples.
+  std::uint32_t triangle(int x, int y) const { return triangle_[index(x, y)]; }
+  float nearness(int x, int y) const { return nearness_[index(x, y)]; }
+
+ private:
+  static std::size_t index(int x, int y) {
+    return static_cast<std::size_t>(y) * SampleGrid::kTileSamples + static_cast<std::size_t>(x);
+  }
+  /// Calls span(y, x0, x1, nearness at sample x0, its slope) for the samples [x0, x1) that each row has.
+  template <class F>
+  void for_spans(const ScreenTriangle& triangle, F&& span) const;
+
+  int origin_x_ = 0, origin_y_ = 0;  // first sample in the grid
+  int width_ = 0, height_ = 0;
+  int per_pixel_ = 1;
+  std::array<float, std::size_t{SampleGrid::kTileSamples} * SampleGrid::kTileSamples> nearness_;
+  std::array<std::uint32_t, std::size_t{SampleGrid::kTileSamples} * SampleGrid::kTileSamples> triangle_;
+};
+
+}  // namespace fovea

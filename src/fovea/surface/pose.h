@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "fovea/model/model.h"
+
+namespace fovea {
+
+/// A model's nodes at one moment.
+struct Pose {
+  std::vector<Mat4> node_world;                    ///< [#nodes], node to world.
+  std::vector<std::vector<double>> morph_weights;  ///< [#nodes][#targets of its mesh]; empty without a mesh.
+};
+
+/// The nodes as the file places them.
+Pose rest_pose(const Model& model);
+
+/// The nodes at a time of an animation; before its first key the first, after its last the last. Nodes that
+/// it does not move rest. What it does to anything but nodes is left out.
+/// Throws Error(usage) if there is no such animation.
+Pose pose_at(const Model& model, std::size_t animation, double time_s);
+
+/// Time of an animation's last key, in seconds.
+double duration_s(const Animation& animation);
+
+/// A node that shows a mesh.
+struct Instance {
+  std::size_t mesh = 0, node = 0;
+  Mat4 world;  ///< Mesh to world; for skinned meshes the joints place the vertices instead.
+};
+
+/// Every showing of every mesh in the default scene (the first if none is named, all nodes without scenes),
+/// in the order of nodes.
+std::vector<Instance> instances(const Model& model, const Pose& pose);
+
+/// A mesh as an instance shows it, in world space. Triangles and layers are those of the mesh.
+struct PosedSurface {
+  std::vector<Vec3f> positions;  ///< [#V]
+  std::vector<Vec3f> normals;    ///< [#values of the normal layer], unit; empty without one.
+  std::vector<Vec3f> tangents;   ///< [#values of the tangent layer], unit; empty without one.
+  bool mirrored = false;         ///< Triangles are clockwise seen from outside.
+};
+
+/// Applies morph targets, then joints or the instance's transform. O(#V · (#targets + #joints per vertex)).
+PosedSurface posed_surface(const Model& model, const Pose& pose, const Instance& instance);
+
+}  // namespace fovea
