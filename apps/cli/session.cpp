@@ -112,7 +112,8 @@ std::uint64_t peak_memory_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB.
 }
 
-void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force,
+                  void (*check)(const std::filesystem::path&, bool)) {
   if (output.empty()) {
     throw Error(ErrorKind::usage, "no output is named", {}, "add: -o OUTPUT, for example -o small.glb");
   }
@@ -127,7 +128,7 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
                   "--force replaces the original; there is no way back");
     }
   }
-  fovea::check_output(output, force);
+  check(output, force);
 }
 
 void check_input(const std::string& input) {

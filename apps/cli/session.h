@@ -11,6 +11,7 @@
 #include "fovea/base/context.h"
 #include "fovea/base/error.h"
 #include "fovea/base/options.h"
+#include "fovea/io/write.h"
 #include "progress.h"
 
 namespace fovea::cli {
@@ -96,8 +97,9 @@ class Session {
 std::uint64_t peak_memory_bytes();
 
 /// Checks an output path before any work is spent on it: Error(usage) for none, for "-" and for a path
-/// that is an input without `force`, then all that io/write.h checks.
-void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
+/// that is an input without `force`, then all that `check` does: that of models, or that of pictures.
+void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force,
+                  void (*check)(const std::filesystem::path&, bool) = fovea::check_output);
 
 /// An input path as given; Error(usage) for "-", Error(input) if it is missing or a folder.
 void check_input(const std::string& input);

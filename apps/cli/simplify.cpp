@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "field_source.h"
 #include "fovea/io/read.h"
 #include "fovea/io/write.h"
-#include "importance.h"
 #include "report.h"
 #include "simplify_text.h"
 #include "text.h"
@@ -58,8 +58,8 @@ class Simplify : public Verb {
     const Snapshot before = snapshot(model, measure_input(input_, model));
     Importance importance;
     if (!importance_.empty()) {
-      importance =
-          session.phase("importance", [&] { return load_importance(importance_, model, read_options_); });
+      importance = session.phase(
+          "importance", [&] { return load_fields(importance_, "--importance", model, read_options_); });
     }
     const SimplifyResult result =
         session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });

@@ -215,6 +215,10 @@ OptionList describe(WriteOptions& o) {
 
 void check_output(const fs::path& path, bool force) {
   check_extension(path);
+  check_place(path, force);
+}
+
+void check_place(const fs::path& path, bool force) {
   check_folder(folder_of(path));
   check_replaceable(path, force);
 }

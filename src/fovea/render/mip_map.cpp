@@ -8,6 +8,13 @@ namespace fovea {
 
 namespace {
 
+constexpr float kUnit = 65535;
+constexpr float kMostTurns = 1e6f;
+/// Squared slope in texels beyond which nothing but the mean is seen.
+constexpr float kSteepest = 1e30f;
+constexpr int kNearest = 9728, kLinear = 9729, kNearestMipNearest = 9984, kLinearMipNearest = 9985,
+              kNearestMipLinear = 9986;
+
 // --- The sRGB curve, with nothing from the C library that differs between machines ----------------------
 
 double fifth_root(double x) {
@@ -45,31 +52,6 @@ struct DisplayCurve {
 const DisplayCurve& display_curve() {
   static const DisplayCurve curve;
   return curve;
-}
-
-const std::array<float, 256>& fractions() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> t{};
-    for (std::size_t i = 0; i < 256; ++i) t[i] = static_cast<float>(i) / 255.0f;
-    return t;
-  }();
-  return table;
-}
-
-std::uint8_t to_byte(float x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f); }
-
-std::uint32_t pack(std::uint8_t r, std::uint8_t g, std::uint8_t b, std::uint8_t a) {
-  return static_cast<std::uint32_t>(r) | static_cast<std::uint32_t>(g) << 8 |
-         static_cast<std::uint32_t>(b) << 16 | static_cast<std::uint32_t>(a) << 24;
-}
-
-std::uint32_t to_texel(const std::uint8_t* pixel, int channels) {
-  switch (channels) {
-    case 1: return pack(pixel[0], pixel[0], pixel[0], 255);
-    case 2: return pack(pixel[0], pixel[0], pixel[0], pixel[1]);
-    case 3: return pack(pixel[0], pixel[1], pixel[2], 255);
-    default: return pack(pixel[0], pixel[1], pixel[2], pixel[3]);
-  }
 }
 
 // --- Looking up -----------------------------------------------------------------------------------------
@@ -118,10 +100,6 @@ Overlap overlap(int i, int from, int to) {
   return o;
 }
 
-constexpr float kMostTurns = 1e6f;
-constexpr int kNearest = 9728, kLinear = 9729, kNearestMipNearest = 9984, kLinearMipNearest = 9985,
-              kNearestMipLinear = 9986;
-
 }  // namespace
 
 std::uint8_t to_display(float light) {
@@ -135,106 +113,145 @@ std::uint8_t to_display(float light) {
 
 float to_light(std::uint8_t display) { return display_curve().light[display]; }
 
-MipMap::MipMap(const Image8& image, ColorEncoding encoding)
-    : to_light_(encoding == ColorEncoding::srgb ? &display_curve().light : &fractions()) {
-  Level level{image.width, image.height, {}};
-  level.texels.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) level.texels.push_back(to_texel(image.at(x, y), image.channels));
+MipMap::MipMap(const Image8& image, ColorEncoding encoding) {
+  std::array<std::uint16_t, 256> value, alpha;
+  for (std::size_t i = 0; i < 256; ++i) {
+    alpha[i] = static_cast<std::uint16_t>(i * 257);
+    value[i] = encoding == ColorEncoding::linear
+                   ? alpha[i]
+                   : static_cast<std::uint16_t>(display_curve().light[i] * kUnit + 0.5f);
   }
-  levels_.push_back(std::move(level));
-  while (levels_.back().width > 1 || levels_.back().height > 1)
-    levels_.push_back(halved(levels_.back(), encoding == ColorEncoding::srgb));
+  const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  texels_.reserve(count + count / 3 + 64);
+  const int channels = image.channels;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* p = image.pixels.data() + i * static_cast<std::size_t>(channels);
+    const std::uint8_t green = channels < 3 ? p[0] : p[1], blue = channels < 3 ? p[0] : p[2];
+    const std::uint8_t a = channels == 2 ? p[1] : channels == 4 ? p[3] : 255;
+    texels_.push_back({value[p[0]], value[green], value[blue], alpha[a]});
+  }
+  levels_.push_back({image.width, image.height, 0});
+  while (levels_.back().width > 1 || levels_.back().height > 1) add_half(levels_.back());
 }
 
-MipMap::Level MipMap::halved(const Level& level, bool srgb) const {
-  Level half{std::max(level.width / 2, 1), std::max(level.height / 2, 1), {}};
-  half.texels.reserve(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height));
+void MipMap::add_half(const Level& level) {
+  const Level half{std::max(level.width / 2, 1), std::max(level.height / 2, 1),
+                   static_cast<std::uint32_t>(texels_.size())};
+  std::vector<Overlap> columns;
+  for (int x = 0; x < half.width; ++x) columns.push_back(overlap(x, level.width, half.width));
   for (int y = 0; y < half.height; ++y) {
     const Overlap rows = overlap(y, level.height, half.height);
-    for (int x = 0; x < half.width; ++x) {
-      const Overlap columns = overlap(x, level.width, half.width);
-      Rgba sum{0, 0, 0, 0};
+    for (const Overlap& column : columns) {
+      std::array<float, 4> sum{0.5f, 0.5f, 0.5f, 0.5f};  // rounds
       for (int j = 0; j < rows.count; ++j) {
-        for (int i = 0; i < columns.count; ++i) {
-          sum = sum + decode(level.at(columns.first + i, rows.first + j)) *
-                          (columns.weights[static_cast<std::size_t>(i)] *
-                           rows.weights[static_cast<std::size_t>(j)]);
+        for (int i = 0; i < column.count; ++i) {
+          const Texel& texel = texels_[level.at(column.first + i, rows.first + j)];
+          const float weight =
+              column.weights[static_cast<std::size_t>(i)] * rows.weights[static_cast<std::size_t>(j)];
+          for (std::size_t k = 0; k < 4; ++k) sum[k] += weight * texel[k];
         }
       }
-      const auto code = [&](float light) { return srgb ? to_display(light) : to_byte(light); };
-      half.texels.push_back(pack(code(sum.r), code(sum.g), code(sum.b), to_byte(sum.a)));
+      Texel mean;
+      for (std::size_t k = 0; k < 4; ++k) mean[k] = static_cast<std::uint16_t>(std::min(sum[k], kUnit));
+      texels_.push_back(mean);
     }
   }
-  return half;
+  levels_.push_back(half);
 }
 
-Rgba MipMap::nearest(const Level& level, Vec2f uv, const Sampler& sampler) const {
+Rgba MipMap::texel(std::size_t level, int x, int y) const {
+  const Texel& t = texels_[levels_[level].at(x, y)];
+  constexpr float kScale = 1 / kUnit;
+  return {t[0] * kScale, t[1] * kScale, t[2] * kScale, t[3] * kScale};
+}
+
+void MipMap::add_nearest(Footprint& footprint, const Level& level, Vec2f uv, const Sampler& sampler,
+                         float weight) {
   const auto x = static_cast<int>(wrapped(uv.x, level.width, sampler.wrap_u));
   const auto y = static_cast<int>(wrapped(uv.y, level.height, sampler.wrap_v));
-  return decode(level.at(std::min(x, level.width - 1), std::min(y, level.height - 1)));
+  footprint.taps[footprint.count++] = {level.at(std::min(x, level.width - 1), std::min(y, level.height - 1)),
+                                       weight};
 }
 
-Rgba MipMap::bilinear(const Level& level, Vec2f uv, const Sampler& sampler) const {
+void MipMap::add_bilinear(Footprint& footprint, const Level& level, Vec2f uv, const Sampler& sampler,
+                          float weight) {
   const float x = wrapped(uv.x, level.width, sampler.wrap_u) - 0.5f;
   const float y = wrapped(uv.y, level.height, sampler.wrap_v) - 0.5f;
-  const float floor_x = std::floor(x), floor_y = std::floor(y);
-  const auto ix = static_cast<int>(floor_x), iy = static_cast<int>(floor_y);
+  // Both are at least −0.5.
+  const int ix = static_cast<int>(x + 1) - 1, iy = static_cast<int>(y + 1) - 1;
   const int x0 = wrapped(ix, level.width, sampler.wrap_u), x1 = wrapped(ix + 1, level.width, sampler.wrap_u);
   const int y0 = wrapped(iy, level.height, sampler.wrap_v),
             y1 = wrapped(iy + 1, level.height, sampler.wrap_v);
-  const float fx = x - floor_x, fy = y - floor_y;
-  return (decode(level.at(x0, y0)) * (1 - fx) + decode(level.at(x1, y0)) * fx) * (1 - fy) +
-         (decode(level.at(x0, y1)) * (1 - fx) + decode(level.at(x1, y1)) * fx) * fy;
+  const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
+  const float above = weight * (1 - fy), below = weight * fy;
+  Footprint::Tap* const taps = footprint.taps.data() + footprint.count;
+  taps[0] = {level.at(x0, y0), above * (1 - fx)};
+  taps[1] = {level.at(x1, y0), above * fx};
+  taps[2] = {level.at(x0, y1), below * (1 - fx)};
+  taps[3] = {level.at(x1, y1), below * fx};
+  footprint.count += 4;
 }
 
-Rgba MipMap::trilinear(float lod, Vec2f uv, const Sampler& sampler) const {
-  const auto last = static_cast<float>(levels_.size() - 1);
+void MipMap::add_look(Footprint& footprint, float lod, Vec2f uv, const Sampler& sampler, float weight) const {
   const int filter = sampler.min_filter.value_or(0);
+  const auto add = [&](bool smooth, std::size_t level, float share) {
+    (smooth ? add_bilinear : add_nearest)(footprint, levels_[level], uv, sampler, weight * share);
+  };
   if (lod <= 0 || filter == kLinear || filter == kNearest) {
-    const bool smooth = lod <= 0 ? sampler.mag_filter != kNearest : filter == kLinear;
-    return smooth ? bilinear(levels_[0], uv, sampler) : nearest(levels_[0], uv, sampler);
+    add(lod <= 0 ? sampler.mag_filter != kNearest : filter == kLinear, 0, 1);
+    return;
   }
-  lod = std::min(lod, last);
+  lod = std::min(lod, static_cast<float>(levels_.size() - 1));
   if (filter == kNearestMipNearest || filter == kLinearMipNearest) {
-    const Level& level = levels_[static_cast<std::size_t>(lod + 0.5f)];
-    return filter == kLinearMipNearest ? bilinear(level, uv, sampler) : nearest(level, uv, sampler);
+    add(filter == kLinearMipNearest, static_cast<std::size_t>(lod + 0.5f), 1);
+    return;
   }
   const auto below = static_cast<std::size_t>(lod);
   const float between = lod - static_cast<float>(below);
-  const auto look = [&](std::size_t level) {
-    return filter == kNearestMipLinear ? nearest(levels_[level], uv, sampler)
-                                       : bilinear(levels_[level], uv, sampler);
-  };
-  if (between == 0) return look(below);
-  return look(below) * (1 - between) + look(below + 1) * between;
+  add(filter != kNearestMipLinear, below, 1 - between);
+  if (between > 0) add(filter != kNearestMipLinear, below + 1, between);
 }
 
-Rgba MipMap::sample(Vec2f uv, const UvSlopes& slopes, const Sampler& sampler, int anisotropy) const {
+Footprint MipMap::footprint(Vec2f uv, const UvSlopes& slopes, const Sampler& sampler, int anisotropy) const {
+  Footprint footprint;
   // Beyond that floats know no fractions of a texel; and what is not finite is nowhere.
   if (!(std::abs(uv.x) < kMostTurns)) uv.x = 0;
   if (!(std::abs(uv.y) < kMostTurns)) uv.y = 0;
   const auto w = static_cast<float>(width()), h = static_cast<float>(height());
   const auto texels2 = [&](Vec2f d) { return d.x * d.x * w * w + d.y * d.y * h * h; };
   const float dx2 = texels2(slopes.dx), dy2 = texels2(slopes.dy);
-  const float long2 = std::max(dx2, dy2), short2 = std::min(dx2, dy2);
-  if (!(long2 > 1)) return trilinear(0, uv, sampler);
-  if (!(long2 < 1e30f)) return texel(levels_.size() - 1, 0, 0);
+  const float long2 = std::max(dx2, dy2), short2 = std::max(std::min(dx2, dy2), 1.0f);
+  if (!(long2 > 1)) {
+    add_look(footprint, 0, uv, sampler, 1);
+    return footprint;
+  }
+  if (!(long2 < kSteepest)) {
+    add_nearest(footprint, levels_.back(), {0, 0}, sampler, 1);
+    return footprint;
+  }
   int looks = 1;
   if (anisotropy > 1) {
-    const float most = static_cast<float>(anisotropy) * static_cast<float>(anisotropy);
-    const float ratio2 = std::min(long2, most * std::max(short2, 1.0f)) / std::max(short2, 1.0f);
-    looks = std::clamp(static_cast<int>(std::ceil(std::sqrt(ratio2) - 1e-3f)), 1, anisotropy);
+    const int most = std::min(anisotropy, Footprint::kMostLooks);
+    looks = std::clamp(static_cast<int>(std::ceil(std::sqrt(long2 / short2) - 1e-3f)), 1, most);
   }
   const float lod = 0.5f * fast_log2(long2) - (looks > 1 ? fast_log2(static_cast<float>(looks)) : 0.0f);
-  if (looks == 1) return trilinear(lod, uv, sampler);
   const Vec2f along = dx2 >= dy2 ? slopes.dx : slopes.dy;
-  Rgba sum{0, 0, 0, 0};
+  const float share = 1.0f / static_cast<float>(looks);
   for (int i = 0; i < looks; ++i) {
-    const float t = (static_cast<float>(i) + 0.5f) / static_cast<float>(looks) - 0.5f;
-    sum = sum + trilinear(lod, uv + along * t, sampler);
+    const float t = (static_cast<float>(i) + 0.5f) * share - 0.5f;
+    add_look(footprint, lod, looks == 1 ? uv : uv + along * t, sampler, share);
   }
-  return sum * (1.0f / static_cast<float>(looks));
+  return footprint;
+}
+
+Rgba MipMap::sample(const Footprint& footprint) const {
+  std::array<float, 4> sum{};
+  for (std::size_t i = 0; i < footprint.count; ++i) {
+    const Texel& texel = texels_[footprint.taps[i].texel];
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += footprint.taps[i].weight * static_cast<float>(texel[k]);
+  }
+  constexpr float kScale = 1 / kUnit;
+  return {sum[0] * kScale, sum[1] * kScale, sum[2] * kScale, sum[3] * kScale};
 }
 
 }  // namespace fovea

@@ -24,9 +24,21 @@ struct UvSlopes {
   Vec2f dx, dy;
 };
 
-/// An image with its smaller copies down to one texel, to be looked up the way GPUs do: texels are four
-/// bytes, colours are decoded to light before they are mixed, levels are made by averaging light over boxes
-/// (of any size: odd rows and columns are shared by weight).
+/// Which texels a look into a map reads, and with what weights. The same for all maps of one size, so that
+/// those of a material are looked up with one footprint.
+struct Footprint {
+  static constexpr int kMostLooks = 16;
+  struct Tap {
+    std::uint32_t texel;
+    float weight;
+  };
+  std::array<Tap, std::size_t{8} * kMostLooks> taps;
+  std::size_t count = 0;
+};
+
+/// An image with its smaller copies down to one texel, to be looked up the way GPUs do: colours are decoded
+/// to light before they are mixed, levels are made by averaging light over boxes (of any size: odd rows and
+/// columns are shared by weight). Eight bytes per texel.
 class MipMap {
  public:
   MipMap() = default;
@@ -36,35 +48,38 @@ class MipMap {
   int width() const { return levels_.empty() ? 0 : levels_[0].width; }
   int height() const { return levels_.empty() ? 0 : levels_[0].height; }
   std::size_t level_count() const { return levels_.size(); }
-  /// Texel of a level, decoded.
-  Rgba texel(std::size_t level, int x, int y) const { return decode(levels_[level].at(x, y)); }
+  Rgba texel(std::size_t level, int x, int y) const;
 
-  /// The texture around `uv` (0 … 1, v down), filtered as `sampler` says: its magnification filter where a
-  /// pixel is less than a texel, else its minification filter; without one, linear and trilinear. Up to
+  /// The look around `uv` (0 … 1, v down), filtered as `sampler` says: by its magnification filter where a
+  /// pixel is less than a texel, else by its minification filter; without one, linear and trilinear. Up to
   /// `anisotropy` trilinear looks are spread along the longer slope.
-  Rgba sample(Vec2f uv, const UvSlopes& slopes, const Sampler& sampler, int anisotropy = 1) const;
+  Footprint footprint(Vec2f uv, const UvSlopes& slopes, const Sampler& sampler, int anisotropy = 1) const;
+  /// What a look at a map of this size sees of this one.
+  Rgba sample(const Footprint& footprint) const;
+  Rgba sample(Vec2f uv, const UvSlopes& slopes, const Sampler& sampler, int anisotropy = 1) const {
+    return sample(footprint(uv, slopes, sampler, anisotropy));
+  }
 
  private:
   struct Level {
     int width = 0, height = 0;
-    std::vector<std::uint32_t> texels;  // [height × width], red in the lowest byte
+    std::uint32_t first = 0;  // texel
     std::uint32_t at(int x, int y) const {
-      return texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                    static_cast<std::size_t>(x)];
+      return first + static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) +
+             static_cast<std::uint32_t>(x);
     }
   };
+  using Texel = std::array<std::uint16_t, 4>;
 
-  Rgba decode(std::uint32_t texel) const {
-    return {(*to_light_)[texel & 0xFF], (*to_light_)[texel >> 8 & 0xFF], (*to_light_)[texel >> 16 & 0xFF],
-            static_cast<float>(texel >> 24) * (1.0f / 255)};
-  }
-  Level halved(const Level& level, bool srgb) const;
-  Rgba nearest(const Level& level, Vec2f uv, const Sampler& sampler) const;
-  Rgba bilinear(const Level& level, Vec2f uv, const Sampler& sampler) const;
-  Rgba trilinear(float lod, Vec2f uv, const Sampler& sampler) const;
+  void add_half(const Level& level);
+  void add_look(Footprint& footprint, float lod, Vec2f uv, const Sampler& sampler, float weight) const;
+  static void add_nearest(Footprint& footprint, const Level& level, Vec2f uv, const Sampler& sampler,
+                          float weight);
+  static void add_bilinear(Footprint& footprint, const Level& level, Vec2f uv, const Sampler& sampler,
+                           float weight);
 
   std::vector<Level> levels_;
-  const std::array<float, 256>* to_light_ = nullptr;
+  std::vector<Texel> texels_;  // of all levels: RGBA as light, 65535 is 1
 };
 
 /// Display value (sRGB curve) of an amount of light in [0, 1], as a byte: the nearest. The same bits on every

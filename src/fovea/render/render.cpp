@@ -42,6 +42,17 @@ class ShaderCache {
   std::array<Entry, kSize> entries_;
 };
 
+Rgba grey(float x) { return {x, x, x, 1}; }
+
+/// A colour that tells numbers apart: of well-spread hues, none dark.
+Rgba id_color(std::uint32_t id) {
+  std::uint32_t x = id * 0x9E3779B1u + 0x7F4A7C15u;
+  x = (x ^ x >> 15) * 0x85EBCA6Bu;
+  x ^= x >> 13;
+  const auto channel = [x](int shift) { return 0.25f + 0.75f * static_cast<float>(x >> shift & 0xFF) / 255; };
+  return {channel(0), channel(8), channel(16), 1};
+}
+
 /// A surface in a pixel: how many samples it has, and where their middle is.
 struct Patch {
   std::uint32_t triangle = kInvalid;
@@ -81,7 +92,8 @@ class PictureMaker {
   Rgba shade(const TriangleShader& shader, const SurfacePoint& point) const;
   Rgba shade(const Patch& patch, int x, int y, ShaderCache& shaders) const;
   void set_pixel(int x, int y, Rgba light, float coverage);
-  bool shows_values() const { return options_.pass == Pass::normal || options_.pass == Pass::field; }
+  /// Passes that show numbers as they are, not light.
+  bool shows_values() const { return options_.pass != Pass::base_color && options_.pass != Pass::lit; }
 
   const RenderScene& scene_;
   const RenderOptions& options_;
@@ -131,9 +143,14 @@ Rgba PictureMaker::shade(const TriangleShader& shader, const SurfacePoint& point
     case Pass::base_color: return shader.base_color(point);
     case Pass::lit: return shader.lit(point);
     case Pass::normal: {
-      const Vec3f n = shader.normal(point, true);
+      const Vec3f n = shader.normal(point);
       return {0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z, 1};
     }
+    case Pass::depth: return grey(shader.depth(point));
+    case Pass::triangle: return id_color(shader.triangle());
+    case Pass::mesh: return id_color(shader.mesh_number());
+    case Pass::part:
+      return id_color(shader.mesh_number() * 64 + shader.mesh().mesh->face_part[shader.face().index()]);
     case Pass::field: break;
   }
   const std::uint32_t mesh = shader.mesh().mesh_index;
@@ -267,6 +284,17 @@ void check(const RenderScene& scene, const RenderOptions& options, std::span<con
 }
 
 }  // namespace
+
+OptionList describe(RenderOptions& o) {
+  return {{"pass", "What to show of the surface.",
+           choice(o.pass, {"base-color", "lit", "normal", "depth", "triangle", "mesh", "part", "field"}), ""},
+          {"width", "Width of a view.", &o.width, "pixels", 1, 32768},
+          {"height", "Height of a view.", &o.height, "pixels", 1, 32768},
+          {"samples", "Places per pixel and axis where the nearest surface is looked for.", &o.samples, "", 1,
+           SampleGrid::kMostPerPixel},
+          {"anisotropy", "Most looks into a texture where a surface is seen at an angle.", &o.anisotropy, "",
+           1, 16}};
+}
 
 Picture render(const RenderScene& scene, const View& view, const RenderOptions& options,
                const Context& context, std::span<const VertexField> fields) {

@@ -19,16 +19,22 @@ enum class Pass {
   base_color,  ///< Base colour without any light on it.
   lit,         ///< Metallic-roughness material with all its maps, under the fixed rig (light_rig.h).
   normal,      ///< World normal with the normal map; −1 … 1 as 0 … 255.
+  depth,       ///< White at the near end of the scene's sphere, black at the far end.
+  triangle,    ///< A colour for every triangle,
+  mesh,        ///< for every mesh of the scene,
+  part,        ///< for every part of a mesh (its materials).
   field,       ///< A number per vertex as heat.
 };
 
 struct RenderOptions {
   Pass pass = Pass::lit;
-  std::int64_t width = 512, height = 512;  ///< Pixels.
+  std::int64_t width = 512, height = 512;  ///< Pixels, 1 … 32768.
   std::int64_t samples = 2;                ///< Along each axis of a pixel: 1 … 8.
-  std::int64_t anisotropy = 4;             ///< Most looks into a texture along its longer slope.
+  std::int64_t anisotropy = 1;             ///< Most looks into a texture along its longer slope.
   std::array<std::uint8_t, 3> background{128, 128, 128};  ///< Display values.
 };
+
+OptionList describe(RenderOptions& options);
 
 /// A picture of a scene.
 struct Picture {

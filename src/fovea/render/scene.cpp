@@ -88,12 +88,42 @@ SceneMaterial scene_material(const Material& m, MipMaps& maps) {
   return s;
 }
 
-/// Takes back textures whose image could not be decoded.
-void drop_missing(SceneMaterial& material, const std::vector<MipMap>& maps) {
-  for (auto* texture : {&material.base_color_texture, &material.metallic_roughness_texture,
-                        &material.normal_texture, &material.occlusion_texture, &material.emissive_texture}) {
-    if (*texture && maps[static_cast<std::size_t>((*texture)->mip_map)].level_count() == 0) texture->reset();
+/// Takes back textures whose image could not be decoded, and numbers the footprints of the others.
+void finish_textures(RenderScene& scene) {
+  std::vector<const SceneTexture*> known;
+  const auto map = [&](const SceneTexture& t) -> const MipMap& {
+    return scene.mip_maps[static_cast<std::size_t>(t.mip_map)];
+  };
+  const auto same_look = [&](const SceneTexture& a, const SceneTexture& b) {
+    return a.uv_set == b.uv_set && a.xx == b.xx && a.xy == b.xy && a.x == b.x && a.yx == b.yx &&
+           a.yy == b.yy && a.y == b.y && a.sampler.wrap_u == b.sampler.wrap_u &&
+           a.sampler.wrap_v == b.sampler.wrap_v && a.sampler.mag_filter == b.sampler.mag_filter &&
+           a.sampler.min_filter == b.sampler.min_filter && map(a).width() == map(b).width() &&
+           map(a).height() == map(b).height();
+  };
+  for (SceneMaterial& m : scene.materials) {
+    for (auto* texture : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                          &m.occlusion_texture, &m.emissive_texture}) {
+      if (!*texture) continue;
+      if (map(**texture).level_count() == 0) {
+        texture->reset();
+        continue;
+      }
+      const auto same = std::find_if(known.begin(), known.end(),
+                                     [&](const SceneTexture* other) { return same_look(**texture, *other); });
+      (*texture)->look = static_cast<int>(same - known.begin());
+      if (same == known.end()) known.push_back(&**texture);
+    }
   }
+}
+
+/// The layers that shading reads.
+void find_layers(SceneMesh& mesh) {
+  mesh.normal = mesh.mesh->find(Semantic::normal);
+  mesh.tangent = mesh.mesh->find(Semantic::tangent);
+  mesh.color = mesh.mesh->find(Semantic::color);
+  while (const AttributeLayer* layer = mesh.mesh->find(Semantic::uv, static_cast<int>(mesh.uv.size())))
+    mesh.uv.push_back(layer);
 }
 
 Sphere sphere_around(const std::vector<SceneMesh>& meshes) {
@@ -120,12 +150,13 @@ RenderScene make_render_scene(const Model& model, const Pose& pose, Context& con
   for (const Material& material : model.materials) scene.materials.push_back(scene_material(material, maps));
   scene.materials.push_back(scene_material(Material{}, maps));
   scene.mip_maps = maps.make(context);
-  for (SceneMaterial& material : scene.materials) drop_missing(material, scene.mip_maps);
+  finish_textures(scene);
 
   const std::vector<Instance> shown = instances(model, pose);
   for (const Instance& instance : shown) {
     SceneMesh mesh;
     mesh.mesh = &model.meshes[instance.mesh].surface;
+    find_layers(mesh);
     mesh.mesh_index = static_cast<std::uint32_t>(instance.mesh);
     mesh.first_triangle = static_cast<std::uint32_t>(scene.triangle_count);
     for (const Part& part : mesh.mesh->parts) {
@@ -142,6 +173,27 @@ RenderScene make_render_scene(const Model& model, const Pose& pose, Context& con
   });
   scene.sphere = sphere_around(scene.meshes);
   return scene;
+}
+
+std::vector<View> camera_views(const Model& model, const Pose& pose) {
+  std::vector<View> views;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    if (model.nodes[n].camera < 0) continue;
+    const Camera& camera = model.cameras[static_cast<std::size_t>(model.nodes[n].camera)];
+    const Mat4& world = pose.node_world[n];
+    View view;
+    view.name = camera.name.empty() ? "camera-" + std::to_string(model.nodes[n].camera) : camera.name;
+    view.eye = transform_point(world, {});
+    // A scale on the node does not change what a camera sees.
+    view.back = normalized(transform_direction(world, {0, 0, 1}));
+    view.right = normalized(cross(transform_direction(world, {0, 1, 0}), view.back));
+    view.up = cross(view.back, view.right);
+    view.perspective = camera.perspective;
+    view.half_height = camera.perspective ? std::tan(0.5 * camera.yfov_rad) : camera.ymag;
+    view.near = camera.znear;
+    views.push_back(view);
+  }
+  return views;
 }
 
 TriangleOrigin origin(const RenderScene& scene, std::uint32_t triangle) {

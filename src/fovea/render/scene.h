@@ -16,6 +16,7 @@ namespace fovea {
 /// A texture as a material uses it, ready to be looked up.
 struct SceneTexture {
   int mip_map = -1;  ///< Index into RenderScene::mip_maps.
+  int look = -1;     ///< The same for textures that are looked up with the same footprint.
   int uv_set = 0;
   Sampler sampler;
   /// uv' = (xx u + xy v + x, yx u + yy v + y), from KHR_texture_transform.
@@ -46,6 +47,8 @@ struct SceneMesh {
   std::uint32_t mesh_index = 0;      ///< In the model.
   std::uint32_t first_triangle = 0;  ///< Number of its first triangle in the scene.
   PosedSurface surface;
+  std::vector<const AttributeLayer*> uv;  ///< [set]
+  const AttributeLayer *normal = nullptr, *tangent = nullptr, *color = nullptr;
   std::vector<std::uint32_t> part_material;  ///< [#parts], into RenderScene::materials.
 };
 
@@ -63,6 +66,9 @@ struct RenderScene {
 /// Poses all instances and decodes the images in parallel. Images that cannot be decoded (KTX2, damaged)
 /// count as absent and are reported ("image-not-shown"). Throws Error(limit) beyond 2³² − 1 triangles.
 RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context);
+
+/// What the model's own cameras see, node by node; their aspect ratio gives way to the picture's.
+std::vector<View> camera_views(const Model& model, const Pose& pose);
 
 /// Where a triangle of the scene comes from.
 struct TriangleOrigin {

@@ -41,9 +41,10 @@ Vec2f transform_uv(const SceneTexture& t, Vec2f uv) {
 
 TriangleShader::TriangleShader(const RenderScene& scene, const Projection& projection, int anisotropy,
                                std::uint32_t triangle)
-    : scene_(scene), projection_(projection), anisotropy_(anisotropy) {
+    : scene_(scene), projection_(projection), anisotropy_(anisotropy), triangle_(triangle) {
   const TriangleOrigin from = origin(scene, triangle);
   mesh_ = &scene.meshes[from.mesh];
+  mesh_number_ = from.mesh;
   face_ = from.face;
   material_ = &scene.materials[mesh_->part_material[mesh_->mesh->face_part[face_.index()]]];
   std::array<Vec3d, 3> h;
@@ -74,27 +75,41 @@ SurfacePoint TriangleShader::at(double x, double y) const {
   return point;
 }
 
-Rgba TriangleShader::look_up(const SceneTexture& texture, const SurfacePoint& point) const {
-  const auto uv = corner_values(mesh_->mesh->find(Semantic::uv, texture.uv_set), face_);
-  if (uv[0] == nullptr) return {1, 1, 1, 1};
-  const Vec2f at = transform_uv(texture, mix_uv(point.weight, uv)) + Vec2f{texture.x, texture.y};
-  const UvSlopes slopes{transform_uv(texture, mix_uv(point.dx, uv)),
-                        transform_uv(texture, mix_uv(point.dy, uv))};
-  return scene_.mip_maps[static_cast<std::size_t>(texture.mip_map)].sample(at, slopes, texture.sampler,
-                                                                           anisotropy_);
+std::array<const float*, 3> TriangleShader::uv(int set) const {
+  const auto& layers = mesh_->uv;
+  return corner_values(
+      static_cast<std::size_t>(set) < layers.size() ? layers[static_cast<std::size_t>(set)] : nullptr, face_);
+}
+
+Rgba TriangleShader::look_up(const SceneTexture& texture, const SurfacePoint& point, LastLook& last) const {
+  const MipMap& map = scene_.mip_maps[static_cast<std::size_t>(texture.mip_map)];
+  if (last.look != texture.look) {
+    const auto corners = uv(texture.uv_set);
+    if (corners[0] == nullptr) return {1, 1, 1, 1};
+    const Vec2f at = transform_uv(texture, mix_uv(point.weight, corners)) + Vec2f{texture.x, texture.y};
+    const UvSlopes slopes{transform_uv(texture, mix_uv(point.dx, corners)),
+                          transform_uv(texture, mix_uv(point.dy, corners))};
+    last.footprint = map.footprint(at, slopes, texture.sampler, anisotropy_);
+    last.look = texture.look;
+  }
+  return map.sample(last.footprint);
 }
 
 Rgba TriangleShader::base_color(const SurfacePoint& point) const {
+  LastLook last;
+  return base_color(point, last);
+}
+
+Rgba TriangleShader::base_color(const SurfacePoint& point, LastLook& last) const {
   Rgba color = material_->base_color;
-  if (material_->base_color_texture) color = color * look_up(*material_->base_color_texture, point);
-  const AttributeLayer* layer = mesh_->mesh->find(Semantic::color, 0);
-  const auto values = corner_values(layer, face_);
+  if (material_->base_color_texture) color = color * look_up(*material_->base_color_texture, point, last);
+  const auto values = corner_values(mesh_->color, face_);
   if (values[0] != nullptr) {
-    Rgba vertex{0, 0, 0, layer->width > 3 ? 0.0f : 1.0f};
+    const bool has_alpha = mesh_->color->width > 3;
+    Rgba vertex{0, 0, 0, has_alpha ? 0.0f : 1.0f};
     for (std::size_t k = 0; k < kCorners; ++k) {
-      vertex =
-          vertex + Rgba{values[k][0], values[k][1], values[k][2], layer->width > 3 ? values[k][3] : 0.0f} *
-                       point.weight[k];
+      vertex = vertex + Rgba{values[k][0], values[k][1], values[k][2], has_alpha ? values[k][3] : 0.0f} *
+                            point.weight[k];
     }
     color = color * vertex;
   }
@@ -113,11 +128,11 @@ Vec3f TriangleShader::to_eye(const SurfacePoint& point) const {
 
 /// Bends a normal by the material's normal map. Without tangents of its own a triangle has those along which
 /// its texture coordinates run.
-Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point) const {
+Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point, LastLook& last) const {
   const SceneTexture& texture = *material_->normal_texture;
-  const auto uv = corner_values(mesh_->mesh->find(Semantic::uv, texture.uv_set), face_);
-  if (uv[0] == nullptr) return normal;
-  const AttributeLayer* const layer = mesh_->mesh->find(Semantic::tangent);
+  const auto corners = uv(texture.uv_set);
+  if (corners[0] == nullptr) return normal;
+  const AttributeLayer* const layer = mesh_->tangent;
   const auto signs = corner_values(layer, face_);
   Vec3f tangent;
   float side = 1;
@@ -131,8 +146,9 @@ Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point) const 
     side = signs[0][3] < 0 ? -1.0f : 1.0f;
     if (mesh_->surface.mirrored) side = -side;
   } else {
-    const Vec2f a = transform_uv(texture, Vec2f{uv[1][0], uv[1][1]} - Vec2f{uv[0][0], uv[0][1]}),
-                b = transform_uv(texture, Vec2f{uv[2][0], uv[2][1]} - Vec2f{uv[0][0], uv[0][1]});
+    const auto corner_uv = [&](std::size_t k) { return Vec2f{corners[k][0], corners[k][1]}; };
+    const Vec2f a = transform_uv(texture, corner_uv(1) - corner_uv(0)),
+                b = transform_uv(texture, corner_uv(2) - corner_uv(0));
     const float area = cross(a, b);
     const Vec3f ea = positions_[1] - positions_[0], eb = positions_[2] - positions_[0];
     tangent = (ea * b.y - eb * a.y) * (area < 0 ? -1.0f : 1.0f);
@@ -144,52 +160,64 @@ Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point) const 
   if (!(l > 0)) return normal;
   tangent = tangent / l;
   const Vec3f bitangent = cross(normal, tangent) * side;
-  const Rgba texel = look_up(texture, point);
+  const Rgba texel = look_up(texture, point, last);
   const float x = (2 * texel.r - 1) * material_->normal_scale,
               y = (2 * texel.g - 1) * material_->normal_scale, z = 2 * texel.b - 1;
   const Vec3f bent = tangent * x + bitangent * y + normal * z;
   return length(bent) > 0 ? normalized(bent) : normal;
 }
 
-Vec3f TriangleShader::normal(const SurfacePoint& point, bool mapped) const {
-  Vec3f n = face_normal_;
-  const AttributeLayer* const layer = mesh_->mesh->find(Semantic::normal);
-  const auto values = corner_values(layer, face_);
-  if (values[0] != nullptr) {
-    std::array<Vec3f, 3> at;
-    for (int k = 0; k < 3; ++k) {
-      at[static_cast<std::size_t>(k)] =
-          mesh_->surface.normals[layer->corner_value[corner(face_, k).index()].index()];
-    }
-    const Vec3f smooth = mix(point, at[0], at[1], at[2]);
-    const float l = length(smooth);
-    if (l > 1e-6f) n = smooth / l;
+Vec3f TriangleShader::geometric_normal(const SurfacePoint& point) const {
+  if (corner_values(mesh_->normal, face_)[0] == nullptr) return face_normal_;
+  std::array<Vec3f, 3> at;
+  for (int k = 0; k < 3; ++k) {
+    at[static_cast<std::size_t>(k)] =
+        mesh_->surface.normals[mesh_->normal->corner_value[corner(face_, k).index()].index()];
   }
-  if (mapped && material_->normal_texture) n = map_normal(n, point);
-  // Seen from behind, the surface is what is seen: its normals turn with its face.
-  return dot(face_normal_, to_eye(point)) < 0 ? -n : n;
+  const Vec3f smooth = mix(point, at[0], at[1], at[2]);
+  const float l = length(smooth);
+  return l > 1e-6f ? smooth / l : face_normal_;
+}
+
+Vec3f TriangleShader::normal(const SurfacePoint& point) const {
+  LastLook last;
+  Vec3f n = geometric_normal(point);
+  if (material_->normal_texture) n = map_normal(n, point, last);
+  return toward(n, to_eye(point));
 }
 
 Rgba TriangleShader::lit(const SurfacePoint& point) const {
-  const Rgba color = base_color(point);
+  LastLook last;
+  const Rgba color = base_color(point, last);
   if (material_->unlit) return color;
   SurfaceLook look;
   look.base_color = color;
   look.metallic = material_->metallic;
   look.roughness = material_->roughness;
   if (material_->metallic_roughness_texture) {
-    const Rgba texel = look_up(*material_->metallic_roughness_texture, point);
+    const Rgba texel = look_up(*material_->metallic_roughness_texture, point, last);
     look.roughness *= texel.g;
     look.metallic *= texel.b;
   }
   if (material_->occlusion_texture) {
-    const float seen = look_up(*material_->occlusion_texture, point).r;
+    const float seen = look_up(*material_->occlusion_texture, point, last).r;
     look.occlusion = 1 + material_->occlusion_strength * (seen - 1);
   }
   look.emission = material_->emission;
   if (material_->emissive_texture)
-    look.emission = look.emission * look_up(*material_->emissive_texture, point);
-  return light_to_eye(look, normal(point, true), to_eye(point));
+    look.emission = look.emission * look_up(*material_->emissive_texture, point, last);
+  Vec3f n = geometric_normal(point);
+  if (material_->normal_texture) n = map_normal(n, point, last);
+  const Vec3f v = to_eye(point);
+  return light_to_eye(look, toward(n, v), v);
+}
+
+float TriangleShader::depth(const SurfacePoint& point) const {
+  const View& view = projection_.view();
+  const double distance = view.to_eye(Vec3d(mix(point, positions_[0], positions_[1], positions_[2]))).z;
+  const double middle = view.to_eye(scene_.sphere.center).z, radius = scene_.sphere.radius;
+  const double depth = radius > 0 ? 0.5 - 0.5 * (distance - middle) / radius : 0.5;
+  return static_cast<float>(std::clamp(depth, 0.0, 1.0));
 }
 
 float TriangleShader::field(const SurfacePoint& point, std::span<const float> per_vertex) const {

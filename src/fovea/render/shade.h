@@ -24,7 +24,8 @@ class TriangleShader {
 
   /// What is at a place of the picture (in pixels from the top left), perspective-correct.
   SurfacePoint at(double x, double y) const;
-  const SceneMaterial& material() const { return *material_; }
+  std::uint32_t triangle() const { return triangle_; }
+  std::uint32_t mesh_number() const { return mesh_number_; }  ///< In the scene.
   const SceneMesh& mesh() const { return *mesh_; }
   FaceId face() const { return face_; }
 
@@ -32,21 +33,34 @@ class TriangleShader {
   Rgba base_color(const SurfacePoint& point) const;
   /// Alpha alone.
   float alpha(const SurfacePoint& point) const;
-  /// Unit vector on the side of the eye: of the surface, or as its normal map bends it.
-  Vec3f normal(const SurfacePoint& point, bool mapped) const;
+  /// Unit vector, bent by the normal map; seen from behind, it turns with the face to the eye.
+  Vec3f normal(const SurfacePoint& point) const;
   /// Light to the eye under the rig (light_rig.h); the base colour if the material is unlit.
   Rgba lit(const SurfacePoint& point) const;
+  /// 1 at the near end of the scene's sphere, 0 at the far end.
+  float depth(const SurfacePoint& point) const;
   /// A number per vertex of the mesh.
   float field(const SurfacePoint& point, std::span<const float> per_vertex) const;
 
  private:
-  Rgba look_up(const SceneTexture& texture, const SurfacePoint& point) const;
+  /// The footprint that was used last; a material's maps mostly share one.
+  struct LastLook {
+    int look = -1;
+    Footprint footprint;
+  };
+  Rgba look_up(const SceneTexture& texture, const SurfacePoint& point, LastLook& last) const;
+  std::array<const float*, 3> uv(int set) const;
+  Rgba base_color(const SurfacePoint& point, LastLook& last) const;
+  Vec3f geometric_normal(const SurfacePoint& point) const;
   Vec3f to_eye(const SurfacePoint& point) const;
-  Vec3f map_normal(Vec3f normal, const SurfacePoint& point) const;
+  Vec3f map_normal(Vec3f normal, const SurfacePoint& point, LastLook& last) const;
+  Vec3f toward(Vec3f normal, Vec3f to_eye) const { return dot(face_normal_, to_eye) < 0 ? -normal : normal; }
 
   const RenderScene& scene_;
   const Projection& projection_;
   const int anisotropy_;
+  const std::uint32_t triangle_;
+  std::uint32_t mesh_number_ = 0;
   const SceneMesh* mesh_;
   const SceneMaterial* material_;
   FaceId face_;

@@ -1,4 +1,4 @@
-#include "importance.h"
+#include "field_source.h"
 
 #include <algorithm>
 #include <array>
@@ -22,14 +22,15 @@ bool is_file(const std::string& source) {
 
 }  // namespace
 
-Importance load_importance(const std::string& source, const Model& model, const ReadOptions& options) {
+std::vector<VertexField> load_fields(const std::string& source, const std::string& option, const Model& model,
+                                     const ReadOptions& options) {
   const bool file = is_file(source);
   try {
     return file ? field_from_source_order(model, read_field(source, options.max_file_bytes))
                 : field_from_attribute(model, source);
   } catch (const Error& error) {
     if (!error.place().empty()) throw;
-    throw error.within(file ? source : "--importance");
+    throw error.within(file ? source : option);
   }
 }
 

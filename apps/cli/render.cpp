@@ -1,0 +1,205 @@
+#include "fovea/render/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "field_source.h"
+#include "fovea/io/image_file.h"
+#include "fovea/io/read.h"
+#include "report.h"
+#include "text.h"
+#include "verb.h"
+
+namespace fovea::cli {
+
+namespace {
+
+/// Along a side of a sheet: what common viewers still open.
+constexpr std::int64_t kMostPixels = 1 << 16;
+
+class Render : public Verb {
+ public:
+  VerbText text() const override {
+    return {"render",
+            "draw a model from one or many sides",
+            "Draws a model with its materials, lit or plain, or numbers that belong to its vertices. Several "
+            "views "
+            "make a sheet. The same picture on every machine, without a graphics card.",
+            {{"fovea render helmet.glb -o helmet.png", "A sheet of 24 views."},
+             {"fovea render helmet.glb -o turn.png --views orbit --view-count 8 --columns 8",
+              "A turntable strip."},
+             {"fovea render fox.glb -o fox.png --view 5 --width 800 --height 600 --animation 0 --time 0.4",
+              "One view of an animation's moment."},
+             {"fovea render scan.ply -o heat.png --pass field --field importance.npy",
+              "Numbers per vertex as a heat map."}}};
+  }
+
+  void declare(Arguments& arguments) override {
+    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add("Views", describe(view_options_));
+    arguments.add(
+        "Views",
+        {{"view", "Draw this view of the set alone, counted from 1; 0 draws all.", &view_, "", 0, 4096},
+         {"columns", "Views side by side in a sheet; 0 makes it about square.", &columns_, "", 0, 4096}});
+    arguments.add("Picture", describe(options_));
+    arguments.add(
+        "Picture",
+        {{"background", "Colour behind the model, as #RRGGBB.", &background_, "colour"},
+         {"field",
+          "Numbers per vertex for --pass field: a .npy or .csv file, or the name of a vertex "
+          "attribute such as _IMPORTANCE.",
+          &field_, "file or name"},
+         {"animation", "Pose the model by this animation, counted from 0.", &animation_, "", 0, 1e6},
+         {"time", "Moment of the animation.", &time_s_, "seconds", 0, 1e9}});
+    arguments.add("Output",
+                  {describe_output(output_), {"force", "Replace an existing output file.", &force_, ""}});
+    arguments.add("Limits", describe(read_options_));
+  }
+
+  int run(Session& session) override {
+    check_request();
+    const Model model =
+        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
+    std::vector<VertexField> fields;
+    if (!field_.empty()) fields = session.phase("field", [&] { return load_range(model, session); });
+    const RenderScene scene =
+        session.phase("prepare", [&] { return make_render_scene(model, pose_of(model), session.context); });
+    const std::vector<View> views = chosen_views(model, scene);
+    Image8 sheet = empty_sheet(views.size());
+    const std::vector<Picture> pictures =
+        session.phase("draw", [&] { return render_views(scene, views, options_, session.context, fields); });
+    arrange(pictures, sheet);
+    session.phase("write", [&] { write_image(sheet, output_, force_); });
+    tell(session, scene, views, sheet);
+    return 0;
+  }
+
+ private:
+  void check_request() {
+    check_input(input_);
+    check_output(output_, {input_}, force_, check_image_output);
+    if ((options_.pass == Pass::field) != !field_.empty()) {
+      throw Error(ErrorKind::usage, "--pass field and --field go together", {},
+                  "--field names the numbers that --pass field shows");
+    }
+    if (time_s_ && !animation_)
+      throw Error(ErrorKind::usage, "--time needs --animation", {}, "for example --animation 0");
+    options_.background = parse_color(background_);
+  }
+
+  static std::array<std::uint8_t, 3> parse_color(const std::string& text) {
+    const bool ok = text.size() == 7 && text[0] == '#' &&
+                    text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+    if (!ok) {
+      throw Error(ErrorKind::usage, fmt::format("\"{}\" is not a colour", printable(text)), "--background",
+                  "write #RRGGBB, for example #808080");
+    }
+    const auto channel = [&](std::size_t at) {
+      return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16));
+    };
+    return {channel(1), channel(3), channel(5)};
+  }
+
+  Pose pose_of(const Model& model) const {
+    if (!animation_) return rest_pose(model);
+    return pose_at(model, static_cast<std::size_t>(*animation_), time_s_.value_or(0));
+  }
+
+  /// The fields scaled to [0, 1] over all meshes; what is not a number is 0.
+  std::vector<VertexField> load_range(const Model& model, Session& session) {
+    std::vector<VertexField> fields = load_fields(field_, "--field", model, read_options_);
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    for (const VertexField& field : fields) {
+      for (const float x : field.values()) {
+        if (!std::isfinite(x)) continue;
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+    }
+    for (VertexField& field : fields) {
+      for (float& x : field.values()) x = std::isfinite(x) && high > low ? (x - low) / (high - low) : 0.0f;
+    }
+    session.report["field"] = {{"source", field_}, {"low", number_json(low)}, {"high", number_json(high)}};
+    return fields;
+  }
+
+  std::vector<View> chosen_views(const Model& model, const RenderScene& scene) const {
+    std::vector<View> views = view_options_.set == ViewSet::cameras ? camera_views(model, pose_of(model))
+                                                                    : make_views(view_options_, scene.sphere);
+    if (views.empty()) {
+      throw Error(ErrorKind::usage, "the model has no cameras", input_, "choose another set with --views");
+    }
+    if (view_ == 0) return views;
+    if (static_cast<std::size_t>(view_) > views.size()) {
+      throw Error(ErrorKind::usage, fmt::format("there are only {} views", views.size()), "--view");
+    }
+    return {views[static_cast<std::size_t>(view_ - 1)]};
+  }
+
+  /// Room for a sheet of views, in the background's colour.
+  Image8 empty_sheet(std::size_t views) const {
+    const auto count = static_cast<std::int64_t>(views);
+    const auto square = static_cast<std::int64_t>(std::ceil(std::sqrt(1.5 * static_cast<double>(count))));
+    const std::int64_t columns = std::clamp(columns_ > 0 ? columns_ : square, std::int64_t{1}, count);
+    const std::int64_t width = columns * options_.width,
+                       height = (count + columns - 1) / columns * options_.height;
+    if (std::max(width, height) > kMostPixels) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("the sheet would have more than {} pixels along a side", kMostPixels), {},
+                  "make the views smaller or fewer");
+    }
+    Image8 sheet(static_cast<int>(width), static_cast<int>(height), 3, ColorEncoding::srgb);
+    for (std::size_t i = 0; i < sheet.pixels.size(); ++i) sheet.pixels[i] = options_.background[i % 3];
+    return sheet;
+  }
+
+  static void arrange(const std::vector<Picture>& pictures, Image8& sheet) {
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+      const Image8& picture = pictures[k].color;
+      const int columns = sheet.width / picture.width, at = static_cast<int>(k);
+      for (int y = 0; y < picture.height; ++y) {
+        std::copy_n(picture.at(0, y), 3 * picture.width,
+                    sheet.at(at % columns * picture.width, at / columns * picture.height + y));
+      }
+    }
+  }
+
+  void tell(Session& session, const RenderScene& scene, const std::vector<View>& views,
+            const Image8& sheet) const {
+    Json& json = session.report["views"] = Json::array();
+    for (const View& view : views) {
+      json.push_back({{"name", view.name},
+                      {"eye", {view.eye.x, view.eye.y, view.eye.z}},
+                      {"toward", {-view.back.x, -view.back.y, -view.back.z}}});
+    }
+    session.report["outputs"] =
+        Json::array({{{"path", output_}, {"width", sheet.width}, {"height", sheet.height}}});
+    session.report["triangles_drawn"] = scene.triangle_count;
+    session.print_summary(fmt::format("{}: {} of {}, {} x {} pixels, {}\n", printable(output_),
+                                      plural(views.size(), "view", "views"),
+                                      plural(scene.triangle_count, "triangle", "triangles"), sheet.width,
+                                      sheet.height, seconds_text(session.seconds())));
+  }
+
+  std::string input_;
+  std::string output_;
+  std::string field_;
+  std::string background_ = "#808080";
+  std::int64_t view_ = 0;
+  std::int64_t columns_ = 0;
+  std::optional<std::int64_t> animation_;
+  std::optional<double> time_s_;
+  bool force_ = false;
+  ViewOptions view_options_;
+  RenderOptions options_;
+  ReadOptions read_options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_render() { return std::make_unique<Render>(); }
+
+}  // namespace fovea::cli
