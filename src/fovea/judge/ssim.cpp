@@ -1,0 +1,107 @@
+#include "fovea/judge/ssim.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fovea/base/error.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr int kRadius = 5;
+constexpr double kSigma = 1.5;
+constexpr float kC1 = (0.01f * 255) * (0.01f * 255), kC2 = (0.03f * 255) * (0.03f * 255);
+constexpr std::array<double, 5> kWeights{0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
+
+Plane windowed(const Plane& plane) {
+  static const std::vector<float> kernel = gaussian_kernel(kSigma, kRadius);
+  return filter(plane, kernel, kernel, Border::crop);
+}
+
+/// Luma around 0: variances are differences of squares, which then lose less.
+constexpr float kMiddle = 128;
+Plane centered_luma(const Image8& image) {
+  Plane plane = luma(image);
+  for (float& value : plane.values) value -= kMiddle;
+  return plane;
+}
+
+Plane product(const Plane& a, const Plane& b) {
+  Plane out(a.width, a.height);
+  for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] = a.values[i] * b.values[i];
+  return out;
+}
+
+/// The mask of windows: that of their middle pixels.
+Plane inner(const Plane& mask) {
+  Plane out(mask.width - 2 * kRadius, mask.height - 2 * kRadius);
+  for (int y = 0; y < out.height; ++y) std::copy_n(mask.row(y + kRadius) + kRadius, out.width, out.row(y));
+  return out;
+}
+
+bool has_window(const Plane& plane) { return std::min(plane.width, plane.height) > 2 * kRadius; }
+
+}  // namespace
+
+SsimReference::SsimReference(const Image8& image) {
+  Plane plane = centered_luma(image);
+  if (!has_window(plane))
+    throw Error(ErrorKind::usage, "SSIM needs images of at least 11 pixels along a side");
+  while (scales_.size() < kWeights.size() && has_window(plane)) {
+    SsimScale scale{plane, windowed(plane), windowed(product(plane, plane))};
+    plane = halved(plane);
+    scales_.push_back(std::move(scale));
+  }
+}
+
+SsimReference::Terms SsimReference::compare(const SsimScale& scale, const Plane& test, const Plane* mask) {
+  const Plane mean_b = windowed(test), square_b = windowed(product(test, test)),
+              cross = windowed(product(scale.luma, test));
+  Plane ssim(mean_b.width, mean_b.height), contrast_structure(mean_b.width, mean_b.height);
+  for (std::size_t i = 0; i < mean_b.values.size(); ++i) {
+    const float a = scale.mean.values[i], b = mean_b.values[i];
+    const float variance_a = scale.mean_square.values[i] - a * a, variance_b = square_b.values[i] - b * b;
+    const float covariance = cross.values[i] - a * b;
+    const float cs = (2 * covariance + kC2) / (variance_a + variance_b + kC2);
+    contrast_structure.values[i] = cs;
+    const float light_a = a + kMiddle, light_b = b + kMiddle;
+    ssim.values[i] = cs * (2 * light_a * light_b + kC1) / (light_a * light_a + light_b * light_b + kC1);
+  }
+  if (mask == nullptr) return {mean(ssim), mean(contrast_structure)};
+  const Plane windows = inner(*mask);
+  // Nothing of the foreground is far enough from the border: nothing is said against it.
+  if (std::none_of(windows.values.begin(), windows.values.end(), [](float m) { return m > 0; })) return {};
+  return {mean(ssim, &windows), mean(contrast_structure, &windows)};
+}
+
+void SsimReference::check_size(const Image8& test) const {
+  const Plane& own = scales_.front().luma;
+  if (test.width != own.width || test.height != own.height)
+    throw Error(ErrorKind::usage, "images of different size cannot be compared");
+}
+
+double SsimReference::ssim(const Image8& test, const Plane* mask) const {
+  check_size(test);
+  return compare(scales_.front(), centered_luma(test), mask).ssim;
+}
+
+double SsimReference::ms_ssim(const Image8& test, const Plane* mask) const {
+  check_size(test);
+  Plane plane = centered_luma(test), reduced = mask != nullptr ? *mask : Plane();
+  double total = 0;
+  for (std::size_t s = 0; s < scales_.size(); ++s) total += kWeights[s];
+  double result = 1;
+  for (std::size_t s = 0; s < scales_.size(); ++s) {
+    const Terms terms = compare(scales_[s], plane, mask != nullptr ? &reduced : nullptr);
+    const double term = s + 1 == scales_.size() ? terms.ssim : terms.contrast_structure;
+    result *= std::pow(std::max(term, 0.0), kWeights[s] / total);
+    if (s + 1 == scales_.size()) break;
+    plane = halved(plane);
+    if (mask != nullptr) reduced = halved(reduced);
+  }
+  return std::min(result, 1.0);
+}
+
+}  // namespace fovea
