@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "fovea/base/error.h"
 
@@ -90,13 +91,14 @@ double SsimReference::ssim(const Image8& test, const Plane* mask) const {
 double SsimReference::ms_ssim(const Image8& test, const Plane* mask) const {
   check_size(test);
   Plane plane = centered_luma(test), reduced = mask != nullptr ? *mask : Plane();
-  double total = 0;
-  for (std::size_t s = 0; s < scales_.size(); ++s) total += kWeights[s];
+  // The weights of all five add up to 1.0001; those of fewer are scaled to that.
+  const double all = std::accumulate(kWeights.begin(), kWeights.end(), 0.0);
+  const double used = std::accumulate(kWeights.begin(), kWeights.begin() + scales_.size(), 0.0);
   double result = 1;
   for (std::size_t s = 0; s < scales_.size(); ++s) {
     const Terms terms = compare(scales_[s], plane, mask != nullptr ? &reduced : nullptr);
     const double term = s + 1 == scales_.size() ? terms.ssim : terms.contrast_structure;
-    result *= std::pow(std::max(term, 0.0), kWeights[s] / total);
+    result *= std::pow(std::max(term, 0.0), kWeights[s] * all / used);
     if (s + 1 == scales_.size()) break;
     plane = halved(plane);
     if (mask != nullptr) reduced = halved(reduced);
