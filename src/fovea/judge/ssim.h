@@ -20,7 +20,7 @@ struct SsimScale {
 /// (Wang, Simoncelli, Bovik 2003): five scales, each of means of 2 × 2 pixels of the one before, weights
 /// 0.0448, 0.2856, 0.3001, 0.2363, 0.1333; the contrast–structure term of every scale and the luminance term
 /// of the last. Images below 176 pixels along a side have fewer scales: those where a window fits, their
-/// weights scaled to sum 1.
+/// weights scaled up to the sum of all.
 class SsimReference {
  public:
   /// Throws Error(usage) for images of less than 11 pixels along a side.

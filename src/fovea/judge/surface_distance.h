@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "fovea/base/context.h"
+#include "fovea/surface/closest_point.h"
+
+namespace fovea {
+
+/// How far the points of one surface are from another, in the surfaces' units.
+struct Deviation {
+  double mean = 0, rms = 0;  ///< Over the area.
+  double max = 0;            ///< Over samples and vertices.
+};
+
+/// Distances between two surfaces, both ways.
+struct SurfaceDistance {
+  Deviation forward;   ///< From the reference to the test: what was lost.
+  Deviation backward;  ///< From the test to the reference: what was added.
+  double mean() const { return 0.5 * (forward.mean + backward.mean); }
+  /// Symmetric Hausdorff distance, from below: at most as much too small as samples are apart.
+  double hausdorff() const { return forward.max > backward.max ? forward.max : backward.max; }
+};
+
+/// Measures with `samples` points on each surface, spread by area (one in each of as many equal shares, the
+/// seed is the context's), and all its vertices for the maximum. Infinite if exactly one surface is empty, 0
+/// if both are. The same for any number of threads. About O(#samples log #F).
+SurfaceDistance surface_distance(const TriangleSoup& reference, const TriangleSoup& test,
+                                 std::int64_t samples, const Context& context);
+
+/// Points on a surface, spread by area; fewer than `count` only if it has no area.
+std::vector<Vec3d> sample_surface(const TriangleSoup& surface, std::int64_t count, std::uint64_t seed);
+
+}  // namespace fovea

@@ -1,0 +1,113 @@
+#include "fovea/surface/closest_point.h"
+
+#include <embree3/rtcore.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "fovea/base/error.h"
+
+namespace fovea {
+
+Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
+  const Vec3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3d bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 - d3 > 0 ? d1 / (d1 - d3) : 0.0);
+  const Vec3d cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 - d6 > 0 ? d2 / (d2 - d6) : 0.0);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double sum = (d4 - d3) + (d5 - d6);
+    return b + (c - b) * (sum > 0 ? (d4 - d3) / sum : 0.0);
+  }
+  const double sum = va + vb + vc;
+  return sum > 0 ? a + ab * (vb / sum) + ac * (vc / sum) : a;
+}
+
+struct ClosestPoint::Tree {
+  const TriangleSoup* surface = nullptr;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  explicit Tree(const TriangleSoup& triangles) : surface(&triangles) {
+    if (triangles.triangles.empty()) return;
+    // One thread: many small trees are built, and results must not depend on the build's order.
+    device = rtcNewDevice("threads=1");
+    if (device == nullptr) throw Error(ErrorKind::internal, "Embree gives no device");
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                              sizeof(Vec3f), triangles.positions.size());
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            3 * sizeof(std::uint32_t), triangles.triangles.size());
+    std::memcpy(positions, triangles.positions.data(), triangles.positions.size() * sizeof(Vec3f));
+    std::memcpy(indices, triangles.triangles.data(), triangles.triangles.size() * 3 * sizeof(std::uint32_t));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+  }
+  ~Tree() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+  Tree(const Tree&) = delete;
+  Tree& operator=(const Tree&) = delete;
+};
+
+namespace {
+
+struct Query {
+  const TriangleSoup* surface;
+  Vec3d p;
+  ClosestPoint::Hit best;
+};
+
+bool look_at_triangle(RTCPointQueryFunctionArguments* arguments) {
+  Query& query = *static_cast<Query*>(arguments->userPtr);
+  const auto& t = query.surface->triangles[arguments->primID];
+  const auto at = [&](std::uint32_t v) { return Vec3d(query.surface->positions[v]); };
+  const Vec3d q = closest_on_triangle(query.p, at(t[0]), at(t[1]), at(t[2]));
+  const double distance = length(q - query.p);
+  ClosestPoint::Hit& best = query.best;
+  if (distance > best.distance || (distance == best.distance && arguments->primID > best.triangle))
+    return false;
+  best = {q, distance, arguments->primID};
+  // A little more, so that rounding hides no equally near triangle.
+  arguments->query->radius = static_cast<float>(distance) * 1.00001f + std::numeric_limits<float>::min();
+  return true;
+}
+
+}  // namespace
+
+ClosestPoint::ClosestPoint(const TriangleSoup& surface) : tree_(std::make_unique<Tree>(surface)) {}
+ClosestPoint::~ClosestPoint() = default;
+ClosestPoint::ClosestPoint(ClosestPoint&&) noexcept = default;
+ClosestPoint& ClosestPoint::operator=(ClosestPoint&&) noexcept = default;
+
+ClosestPoint::Hit ClosestPoint::nearest(Vec3d p) const {
+  Query query{tree_->surface, p, {{}, std::numeric_limits<double>::infinity(), 0}};
+  if (tree_->scene == nullptr) return query.best;
+  RTCPointQuery point;
+  point.x = static_cast<float>(p.x);
+  point.y = static_cast<float>(p.y);
+  point.z = static_cast<float>(p.z);
+  point.time = 0;
+  point.radius = std::numeric_limits<float>::infinity();
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(tree_->scene, &point, &context, look_at_triangle, &query);
+  return query.best;
+}
+
+}  // namespace fovea

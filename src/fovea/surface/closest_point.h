@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "fovea/base/math.h"
+
+namespace fovea {
+
+/// Triangles over points, in one space.
+struct TriangleSoup {
+  std::vector<Vec3f> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into `positions`.
+};
+
+/// The point of a triangle that is nearest to p (Ericson 2005, 5.1.5).
+Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c);
+
+/// Finds the nearest points of a surface; built once, asked often, from any thread.
+class ClosestPoint {
+ public:
+  struct Hit {
+    Vec3d point;
+    double distance = 0;  ///< Infinite if the surface has no triangles.
+    std::uint32_t triangle = 0;
+  };
+
+  /// O(#F log #F). `surface` must outlive this.
+  explicit ClosestPoint(const TriangleSoup& surface);
+  ~ClosestPoint();
+  ClosestPoint(ClosestPoint&&) noexcept;
+  ClosestPoint& operator=(ClosestPoint&&) noexcept;
+
+  /// Of equally near triangles the one with the lowest number. About O(log #F).
+  Hit nearest(Vec3d p) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace fovea
