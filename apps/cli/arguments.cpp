@@ -94,7 +94,13 @@ void Arguments::parse(const std::vector<std::string>& words, const std::string& 
       }
     }
   }
-  for (const Positional& positional : positionals_) app.add_option(positional.name, *positional.value);
+  for (const Positional& positional : positionals_) {
+    if (positional.values != nullptr) {
+      app.add_option(positional.name, *positional.values);
+    } else {
+      app.add_option(positional.name, *positional.value);
+    }
+  }
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ArgumentMismatch& error) {
@@ -112,7 +118,8 @@ void Arguments::parse(const std::vector<std::string>& words, const std::string& 
       std::find_if(rest.begin(), rest.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
   if (!rest.empty()) refuse(flag != rest.end() ? *flag : rest.front(), verb);
   for (const Positional& positional : positionals_) {
-    if (positional.required && positional.value->empty()) {
+    if (positional.required &&
+        (positional.values != nullptr ? positional.values->empty() : positional.value->empty())) {
       throw Error(ErrorKind::usage, fmt::format("{} is missing", positional.name), {}, help_hint(verb));
     }
   }

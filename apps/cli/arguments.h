@@ -14,6 +14,7 @@ struct Positional {
   std::string help;
   std::string* value = nullptr;
   bool required = true;
+  std::vector<std::string>* values = nullptr;  ///< Instead of `value`: one or more; must be the last.
 };
 
 /// Options under one heading of `--help`.

@@ -71,7 +71,8 @@ std::string entry(const std::string& left, const std::string& help) {
 
 std::string usage_line(const Verb& verb, const Arguments& arguments) {
   std::string line = "fovea " + verb.text().name;
-  for (const Positional& p : arguments.positionals()) line += p.required ? " " + p.name : " [" + p.name + "]";
+  for (const Positional& p : arguments.positionals())
+    line += (p.required ? " " + p.name : " [" + p.name + "]") + (p.values != nullptr ? "..." : "");
   for (const OptionGroup& group : arguments.groups()) {
     for (const Option& option : group.options) {
       if (option.name == "output") line += " -o " + value_name(option);

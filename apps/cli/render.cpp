@@ -54,8 +54,7 @@ class Render : public Verb {
           &field_, "file or name"},
          {"animation", "Pose the model by this animation, counted from 0.", &animation_, "", 0, 1e6},
          {"time", "Moment of the animation.", &time_s_, "seconds", 0, 1e9}});
-    arguments.add("Output",
-                  {describe_output(output_), {"force", "Replace an existing output file.", &force_, ""}});
+    arguments.add("Output", {describe_output(output_), describe_force(force_)});
     arguments.add("Limits", describe(read_options_));
   }
 

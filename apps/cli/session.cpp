@@ -28,6 +28,14 @@ Option describe_output(std::string& path) {
   return {"output", "File to write; its extension picks the format.", &path, "output"};
 }
 
+Option describe_force(bool& force) {
+  WriteOptions model;
+  for (Option& option : describe(model)) {
+    if (option.name == "force") return {option.name, option.help, &force, option.unit};
+  }
+  throw Error(ErrorKind::internal, "models are written without --force");
+}
+
 Session::Session(const CommonOptions& common) : common_(common), progress_(!common.quiet) {
   context.threads = static_cast<int>(common.threads);
   context.seed = static_cast<std::uint64_t>(common.seed);

@@ -32,6 +32,9 @@ OptionList describe(CommonOptions& options);
 /// The option of every verb that writes a file.
 Option describe_output(std::string& path);
 
+/// The option of verbs that write something else than a model.
+Option describe_force(bool& force);
+
 /// One run of a verb: the library's context, what is printed where, and the report for --json.
 ///
 /// stdout is for data, stderr for talk. `--json` turns everything on stdout into one object.

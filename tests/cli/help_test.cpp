@@ -69,7 +69,7 @@ TEST(Suggestions, UnknownVerb) {
 }
 
 TEST(Suggestions, NothingNearListsTheVerbs) {
-  EXPECT_THAT(fovea({"qqqqqqqqqq"}).err, HasSubstr("verbs are: info, simplify, sample"));
+  EXPECT_THAT(fovea({"qqqqqqqqqq"}).err, HasSubstr("verbs are: info, simplify, compare, render, sample"));
 }
 
 TEST(Suggestions, FlagBeforeTheVerb) {

@@ -171,13 +171,16 @@ FlipReference::Seen FlipReference::see(const Image8& image) const {
   seen.lightness = blur(y, {{1, 0.0047}}, pixels_per_degree_);
   seen.a = blur(cx, {{1, 0.0053}}, pixels_per_degree_);
   seen.b = blur(cz, {{34.1, 0.04}, {13.5, 0.025}}, pixels_per_degree_);
+  Vec3d opponent{-1e9, 0, 0}, lab;
   for (std::size_t i = 0; i < y.values.size(); ++i) {
-    const double lum = (static_cast<double>(seen.lightness.values[i]) + 16) / 116;
-    const double x = lum + static_cast<double>(seen.a.values[i]) / 500,
-                 z = lum - static_cast<double>(seen.b.values[i]) / 200;
-    Vec3d rgb = to_rgb({x * kWhite.x, lum * kWhite.y, z * kWhite.z});
-    rgb = min(max(rgb, Vec3d{0, 0, 0}), Vec3d{1, 1, 1});
-    const Vec3d lab = hunt_lab(rgb);
+    const Vec3d here = seen.at(i);
+    // Backgrounds are even: a pixel like the one before looks like it.
+    if (!(here == opponent)) {
+      opponent = here;
+      const double lum = (here.x + 16) / 116, x = lum + here.y / 500, z = lum - here.z / 200;
+      const Vec3d rgb = to_rgb({x * kWhite.x, lum * kWhite.y, z * kWhite.z});
+      lab = hunt_lab(min(max(rgb, Vec3d{0, 0, 0}), Vec3d{1, 1, 1}));
+    }
     seen.lightness.values[i] = static_cast<float>(lab.x);
     seen.a.values[i] = static_cast<float>(lab.y);
     seen.b.values[i] = static_cast<float>(lab.z);
@@ -189,12 +192,10 @@ Plane FlipReference::map(const Image8& test) const {
   static const double largest = largest_difference();
   const Seen seen = see(test);
   Plane result(width_, height_);
-  const auto at = [](const Seen& s, std::size_t i) {
-    return Vec3d{static_cast<double>(s.lightness.values[i]), static_cast<double>(s.a.values[i]),
-                 static_cast<double>(s.b.values[i])};
-  };
   for (std::size_t i = 0; i < result.values.size(); ++i) {
-    const double difference = std::pow(hyab(at(reference_, i), at(seen, i)), kColorExponent);
+    const Vec3d own = reference_.at(i), other = seen.at(i);
+    if (own == other) continue;  // no difference of colour is none, whatever the features
+    const double difference = std::pow(hyab(own, other), kColorExponent);
     const double knee = kColorKnee * largest;
     const double color = difference < knee
                              ? kColorTarget / knee * difference

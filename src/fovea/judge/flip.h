@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fovea/base/math.h"
 #include "fovea/judge/plane.h"
 
 namespace fovea {
@@ -25,6 +26,10 @@ class FlipReference {
   struct Seen {
     Plane lightness, a, b;  ///< Hunt-adjusted CIELAB after the eye's blur.
     Plane edges, points;    ///< Strength of features in the unblurred image.
+    Vec3d at(std::size_t i) const {
+      return {static_cast<double>(lightness.values[i]), static_cast<double>(a.values[i]),
+              static_cast<double>(b.values[i])};
+    }
   };
   Seen see(const Image8& image) const;
 

@@ -42,6 +42,27 @@ Plane inner(const Plane& mask) {
   return out;
 }
 
+/// SSIM and its contrast–structure term in every window.
+struct SsimMaps {
+  Plane ssim, contrast_structure;
+};
+
+SsimMaps compare(const SsimScale& scale, const Plane& test) {
+  const Plane mean_b = windowed(test), square_b = windowed(product(test, test)),
+              cross = windowed(product(scale.luma, test));
+  SsimMaps maps{Plane(mean_b.width, mean_b.height), Plane(mean_b.width, mean_b.height)};
+  for (std::size_t i = 0; i < mean_b.values.size(); ++i) {
+    const float a = scale.mean.values[i], b = mean_b.values[i];
+    const float variance_a = scale.mean_square.values[i] - a * a, variance_b = square_b.values[i] - b * b;
+    const float covariance = cross.values[i] - a * b;
+    const float cs = (2 * covariance + kC2) / (variance_a + variance_b + kC2);
+    const float light_a = a + kMiddle, light_b = b + kMiddle;
+    maps.contrast_structure.values[i] = cs;
+    maps.ssim.values[i] = cs * (2 * light_a * light_b + kC1) / (light_a * light_a + light_b * light_b + kC1);
+  }
+  return maps;
+}
+
 bool has_window(const Plane& plane) { return std::min(plane.width, plane.height) > 2 * kRadius; }
 
 }  // namespace
@@ -57,53 +78,36 @@ SsimReference::SsimReference(const Image8& image) {
   }
 }
 
-SsimReference::Terms SsimReference::compare(const SsimScale& scale, const Plane& test, const Plane* mask) {
-  const Plane mean_b = windowed(test), square_b = windowed(product(test, test)),
-              cross = windowed(product(scale.luma, test));
-  Plane ssim(mean_b.width, mean_b.height), contrast_structure(mean_b.width, mean_b.height);
-  for (std::size_t i = 0; i < mean_b.values.size(); ++i) {
-    const float a = scale.mean.values[i], b = mean_b.values[i];
-    const float variance_a = scale.mean_square.values[i] - a * a, variance_b = square_b.values[i] - b * b;
-    const float covariance = cross.values[i] - a * b;
-    const float cs = (2 * covariance + kC2) / (variance_a + variance_b + kC2);
-    contrast_structure.values[i] = cs;
-    const float light_a = a + kMiddle, light_b = b + kMiddle;
-    ssim.values[i] = cs * (2 * light_a * light_b + kC1) / (light_a * light_a + light_b * light_b + kC1);
-  }
-  if (mask == nullptr) return {mean(ssim), mean(contrast_structure)};
-  const Plane windows = inner(*mask);
-  // Nothing of the foreground is far enough from the border: nothing is said against it.
-  if (std::none_of(windows.values.begin(), windows.values.end(), [](float m) { return m > 0; })) return {};
-  return {mean(ssim, &windows), mean(contrast_structure, &windows)};
-}
-
-void SsimReference::check_size(const Image8& test) const {
+SsimScores SsimReference::score(const Image8& test, const Plane* mask) const {
   const Plane& own = scales_.front().luma;
   if (test.width != own.width || test.height != own.height)
     throw Error(ErrorKind::usage, "images of different size cannot be compared");
-}
-
-double SsimReference::ssim(const Image8& test, const Plane* mask) const {
-  check_size(test);
-  return compare(scales_.front(), centered_luma(test), mask).ssim;
-}
-
-double SsimReference::ms_ssim(const Image8& test, const Plane* mask) const {
-  check_size(test);
-  Plane plane = centered_luma(test), reduced = mask != nullptr ? *mask : Plane();
   // The weights of all five add up to 1.0001; those of fewer are scaled to that.
   const double all = std::accumulate(kWeights.begin(), kWeights.end(), 0.0);
   const double used = std::accumulate(kWeights.begin(), kWeights.begin() + scales_.size(), 0.0);
-  double result = 1;
+  Plane plane = centered_luma(test), reduced = mask != nullptr ? *mask : Plane();
+  SsimScores scores;
   for (std::size_t s = 0; s < scales_.size(); ++s) {
-    const Terms terms = compare(scales_[s], plane, mask != nullptr ? &reduced : nullptr);
-    const double term = s + 1 == scales_.size() ? terms.ssim : terms.contrast_structure;
-    result *= std::pow(std::max(term, 0.0), kWeights[s] * all / used);
+    const SsimMaps maps = compare(scales_[s], plane);
+    const Plane& term = s + 1 == scales_.size() ? maps.ssim : maps.contrast_structure;
+    const double weight = kWeights[s] * all / used;
+    if (s == 0) scores.ssim = mean(maps.ssim);
+    scores.ms_ssim *= std::pow(std::max(mean(term), 0.0), weight);
+    if (mask != nullptr) {
+      const Plane windows = inner(reduced);
+      // Where nothing of the mask is far enough from the border nothing is said against it.
+      if (std::any_of(windows.values.begin(), windows.values.end(), [](float m) { return m > 0; })) {
+        if (s == 0) scores.ssim_masked = mean(maps.ssim, &windows);
+        scores.ms_ssim_masked *= std::pow(std::max(mean(term, &windows), 0.0), weight);
+      }
+    }
     if (s + 1 == scales_.size()) break;
     plane = halved(plane);
     if (mask != nullptr) reduced = halved(reduced);
   }
-  return std::min(result, 1.0);
+  scores.ms_ssim = std::min(scores.ms_ssim, 1.0);
+  scores.ms_ssim_masked = std::min(scores.ms_ssim_masked, 1.0);
+  return scores;
 }
 
 }  // namespace fovea

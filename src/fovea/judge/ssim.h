@@ -13,6 +13,13 @@ struct SsimScale {
   Plane mean_square;  ///< Of luma², the same.
 };
 
+/// What SSIM says of two images.
+struct SsimScores {
+  double ssim = 1;                             ///< Mean of the full scale, −1 … 1; 1 is identical.
+  double ms_ssim = 1;                          ///< 0 … 1; negative terms count as 0, as usual.
+  double ssim_masked = 1, ms_ssim_masked = 1;  ///< Over the mask; 1 without one.
+};
+
 /// An image ready to be compared with others by SSIM and MS-SSIM.
 ///
 /// Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) of Rec. 601 luma, windows of 11 × 11 pixels
@@ -26,21 +33,11 @@ class SsimReference {
   /// Throws Error(usage) for images of less than 11 pixels along a side.
   explicit SsimReference(const Image8& image);
 
-  /// Mean SSIM of the full scale, −1 … 1; 1 is identical. With a mask (of the image's size), over windows
-  /// around pixels above 0.
-  double ssim(const Image8& test, const Plane* mask = nullptr) const;
-  /// 0 … 1; negative terms count as 0, as usual. A mask counts at every scale where any of its pixels is in.
-  double ms_ssim(const Image8& test, const Plane* mask = nullptr) const;
+  /// Compares `test` with this image; with a mask (of the image's size) also over the windows around pixels
+  /// above 0, at every scale where any of them is in. Throws Error(usage) for an image of another size.
+  SsimScores score(const Image8& test, const Plane* mask = nullptr) const;
 
  private:
-  struct Terms {
-    double ssim = 1;                ///< Mean of luminance × contrast–structure.
-    double contrast_structure = 1;  ///< Mean.
-  };
-  static Terms compare(const SsimScale& scale, const Plane& test, const Plane* mask);
-
-  void check_size(const Image8& test) const;
-
   std::vector<SsimScale> scales_;
 };
 

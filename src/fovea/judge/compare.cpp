@@ -1,0 +1,159 @@
+#include "fovea/judge/compare.h"
+
+#include "fovea/base/error.h"
+#include "fovea/base/parallel.h"
+#include "fovea/judge/psnr.h"
+#include "fovea/judge/ssim.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr std::array<Pass, 2> kPasses{Pass::base_color, Pass::lit};  // by JudgedPass
+
+/// A reference picture, with what its comparison with any other needs.
+struct PreparedPicture {
+  Picture picture;
+  SsimReference ssim;
+  FlipReference flip;
+
+  PreparedPicture(Picture&& p, double pixels_per_degree)
+      : picture(std::move(p)), ssim(picture.color), flip(picture.color, pixels_per_degree) {}
+};
+
+ImageScores score(const PreparedPicture& reference, const Picture& test) {
+  const Plane mask = foreground(reference.picture.coverage, test.coverage);
+  const Plane flip = reference.flip.map(test.color);
+  ImageScores s;
+  s.mse = mean_squared_error(reference.picture.color, test.color);
+  s.mse_foreground = mean_squared_error(reference.picture.color, test.color, &mask);
+  s.psnr = psnr(s.mse);
+  s.psnr_foreground = psnr(s.mse_foreground);
+  const SsimScores ssim = reference.ssim.score(test.color, &mask);
+  s.ssim = ssim.ssim;
+  s.ssim_foreground = ssim.ssim_masked;
+  s.ms_ssim = ssim.ms_ssim;
+  s.ms_ssim_foreground = ssim.ms_ssim_masked;
+  s.flip = mean(flip);
+  s.flip_foreground = mean(flip, &mask);
+  return s;
+}
+
+Pose pose_of(const Model& model, int animation, double time_s) {
+  return animation < 0 ? rest_pose(model) : pose_at(model, static_cast<std::size_t>(animation), time_s);
+}
+
+/// Means over the views.
+void summarize(Comparison& c) {
+  if (c.views.empty()) return;
+  const auto count = static_cast<double>(c.views.size());
+  c.silhouette_iou = 0;
+  for (std::size_t p = 0; p < kPasses.size(); ++p) {
+    ImageScores sum{0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    for (const ViewComparison& view : c.views) {
+      const ImageScores& s = view.passes[p];
+      sum.mse += s.mse / count;
+      sum.mse_foreground += s.mse_foreground / count;
+      sum.ssim += s.ssim / count;
+      sum.ssim_foreground += s.ssim_foreground / count;
+      sum.ms_ssim += s.ms_ssim / count;
+      sum.ms_ssim_foreground += s.ms_ssim_foreground / count;
+      sum.flip += s.flip / count;
+      sum.flip_foreground += s.flip_foreground / count;
+    }
+    sum.psnr = psnr(sum.mse);
+    sum.psnr_foreground = psnr(sum.mse_foreground);
+    c.passes[p] = sum;
+  }
+  for (const ViewComparison& view : c.views) c.silhouette_iou += view.silhouette_iou / count;
+}
+
+double diagonal_of(const TriangleSoup& soup) {
+  Box box;
+  for (const Vec3f& p : soup.positions) box.add(Vec3d(p));
+  return box.diagonal();
+}
+
+}  // namespace
+
+OptionList describe(CompareOptions& o) {
+  OptionList options = describe(o.views);
+  options.insert(
+      options.end(),
+      {{"view-size", "Pixels along each side of a view.", &o.size, "pixels", 11, 8192},
+       {"samples", "Places per pixel and axis where the nearest surface is looked for.", &o.samples, "", 1,
+        8},
+       {"pixels-per-degree", "Of the observer that FLIP stands for: 67 is a 4K screen at arm's length.",
+        &o.pixels_per_degree, "", 1, 1000},
+       {"distance-samples", "Points on each surface for the distance between them.", &o.distance_samples, "",
+        100, 1e8}});
+  return options;
+}
+
+ImageScores score(const Picture& reference, const Picture& test, double pixels_per_degree) {
+  return score(PreparedPicture(Picture(reference), pixels_per_degree), test);
+}
+
+TriangleSoup triangles_of(const RenderScene& scene) {
+  TriangleSoup soup;
+  for (const SceneMesh& mesh : scene.meshes) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    const std::vector<Vec3f>& positions = mesh.surface.positions;
+    soup.positions.insert(soup.positions.end(), positions.begin(), positions.end());
+    for (const auto& t : mesh.mesh->triangles)
+      soup.triangles.push_back({first + t[0].value, first + t[1].value, first + t[2].value});
+  }
+  return soup;
+}
+
+std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
+                                const CompareOptions& options, Context& context, int animation,
+                                double time_s) {
+  const Pose pose = pose_of(reference, animation, time_s);
+  const RenderScene scene = make_render_scene(reference, pose, context);
+  if (scene.triangle_count == 0)
+    throw Error(ErrorKind::usage, "the reference has no triangles to compare with");
+  std::vector<RenderScene> test_scenes;
+  for (const Model* test : tests)
+    test_scenes.push_back(make_render_scene(*test, pose_of(*test, animation, time_s), context));
+  const std::vector<View> views = options.views.set == ViewSet::cameras
+                                      ? camera_views(reference, pose)
+                                      : make_views(options.views, scene.sphere);
+  if (views.empty())
+    throw Error(ErrorKind::usage, "the reference has no cameras", {}, "choose another set of views");
+
+  std::vector<Comparison> result(tests.size());
+  for (Comparison& comparison : result) comparison.views.resize(views.size());
+  RenderOptions render_options;
+  render_options.width = render_options.height = options.size;
+  render_options.samples = options.samples;
+  parallel_for(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end && !context.cancelled(); ++v) {
+      for (std::size_t p = 0; p < kPasses.size(); ++p) {
+        RenderOptions pass = render_options;
+        pass.pass = kPasses[p];
+        const PreparedPicture prepared(render(scene, views[v], pass, context), options.pixels_per_degree);
+        for (std::size_t t = 0; t < tests.size(); ++t) {
+          const Picture picture = render(test_scenes[t], views[v], pass, context);
+          ViewComparison& view = result[t].views[v];
+          view.name = views[v].name;
+          view.passes[p] = score(prepared, picture);
+          view.silhouette_iou = silhouette_iou(prepared.picture.coverage, picture.coverage);
+        }
+      }
+    }
+  });
+  context.advance_or_throw("compare", 0.9);
+
+  const TriangleSoup surface = triangles_of(scene);
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    summarize(result[t]);
+    result[t].reference_diagonal = diagonal_of(surface);
+    result[t].distance =
+        surface_distance(surface, triangles_of(test_scenes[t]), options.distance_samples, context);
+  }
+  context.advance_or_throw("compare", 1);
+  return result;
+}
+
+}  // namespace fovea

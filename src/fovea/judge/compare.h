@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/base/options.h"
+#include "fovea/judge/flip.h"
+#include "fovea/judge/surface_distance.h"
+#include "fovea/model/model.h"
+#include "fovea/render/render.h"
+#include "fovea/render/view.h"
+#include "fovea/surface/pose.h"
+
+namespace fovea {
+
+/// How like two pictures are, or the views of two models. Names with `foreground`: over the pixels that
+/// either model covers, so that values do not depend on how much background there is.
+struct ImageScores {
+  double mse = 0, mse_foreground = 0;    ///< Of display values.
+  double psnr = 0, psnr_foreground = 0;  ///< dB, from `mse`; infinite if there is no difference.
+  double ssim = 1, ssim_foreground = 1;
+  double ms_ssim = 1, ms_ssim_foreground = 1;
+  double flip = 0, flip_foreground = 0;  ///< 0 is identical, 1 the most.
+};
+
+/// The passes that are compared.
+enum class JudgedPass { base_color, lit };
+constexpr std::array<JudgedPass, 2> kJudgedPasses{JudgedPass::base_color, JudgedPass::lit};
+
+/// One view of two models.
+struct ViewComparison {
+  std::string name;
+  std::array<ImageScores, 2> passes;  ///< By JudgedPass.
+  double silhouette_iou = 1;
+};
+
+/// What comparing a model with a reference found.
+struct Comparison {
+  std::vector<ViewComparison> views;
+  /// Over all views: means, but `mse` over all pixels of all views, and `psnr` from that.
+  std::array<ImageScores, 2> passes;
+  double silhouette_iou = 1;
+  SurfaceDistance distance;       ///< In scene units,
+  double reference_diagonal = 0;  ///< of which this is the diagonal of the reference's box.
+
+  const ImageScores& operator[](JudgedPass pass) const { return passes[static_cast<std::size_t>(pass)]; }
+};
+
+struct CompareOptions {
+  ViewOptions views;         ///< Framed by the reference's bounding sphere, for both models.
+  std::int64_t size = 512;   ///< Pixels along each side of a view.
+  std::int64_t samples = 2;  ///< As RenderOptions.
+  double pixels_per_degree = kFlipPixelsPerDegree;
+  std::int64_t distance_samples = 50000;  ///< On each surface.
+};
+OptionList describe(CompareOptions& options);
+
+/// Compares each of `tests` with the reference: the same cameras (§6 of the protocol of Yang et al. 2016: 24
+/// views at the vertices of the small rhombicuboctahedron), base colour and lit, and the surfaces themselves.
+/// Models are in their rest pose, or at `time_s` of their animation number `animation` if it is not negative.
+///
+/// Throws Error(usage) for a reference with no triangles and for an animation that a model lacks. The same
+/// for any number of threads. Views are worked on one by one per thread, so that memory does not grow with
+/// their number.
+std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
+                                const CompareOptions& options, Context& context, int animation = -1,
+                                double time_s = 0);
+
+/// How like `test` is to `reference`, two pictures of the same size.
+ImageScores score(const Picture& reference, const Picture& test,
+                  double pixels_per_degree = kFlipPixelsPerDegree);
+
+/// All triangles of a scene, in world space.
+TriangleSoup triangles_of(const RenderScene& scene);
+
+}  // namespace fovea
