@@ -6,6 +6,8 @@
 
 #include "fovea/io/file_bytes.h"
 #include "fovea/io/read.h"
+#include "fovea/io/write.h"
+#include "fovea/judge/report.h"
 #include "report.h"
 #include "text.h"
 #include "verb.h"
@@ -69,11 +71,12 @@ class Compare : public Verb {
         "compare",
         "say how like models are to a reference",
         "Draws a reference and other models from the same sides and compares the pictures: PSNR, SSIM and "
-        "MS-SSIM "
-        "(1 is identical), FLIP (0 is identical), the silhouettes; and measures how far the surfaces are "
-        "apart.",
+        "MS-SSIM (1 is identical), FLIP (0 is identical), the silhouettes; and measures how far the surfaces "
+        "are apart.",
         {{"fovea compare helmet.glb small.glb", "How good is small.glb?"},
          {"fovea compare helmet.glb a.glb b.glb c.glb --json", "Three candidates, every view, for programs."},
+         {"fovea compare helmet.glb small.glb --report small.html",
+          "A page to look at, with everything in it."},
          {"fovea compare fox.glb fox-10.glb --animation 0 --time 0.4", "At a moment of an animation."}}};
   }
 
@@ -84,6 +87,9 @@ class Compare : public Verb {
     arguments.add("Comparison", {{"animation", "Pose all models by this animation, counted from 0.",
                                   &animation_, "", 0, 1e6},
                                  {"time", "Moment of the animation.", &time_s_, "seconds", 0, 1e9}});
+    arguments.add("Output",
+                  {{"report", "Write a page with pictures of every view, ending in .html.", &report_, "file"},
+                   describe_force(force_)});
     arguments.add("Limits", describe(read_options_));
   }
 
@@ -91,21 +97,56 @@ class Compare : public Verb {
     if (time_s_ && !animation_)
       throw Error(ErrorKind::usage, "--time needs --animation", {}, "for example --animation 0");
     check_input(reference_);
+    if (!report_.empty()) check_output(report_, inputs(), force_, check_report_output);
     for (const std::string& test : tests_) check_input(test);
     const Model reference = read(session, reference_);
     std::vector<Model> models;
     std::vector<const Model*> tests;
     for (const std::string& test : tests_) models.push_back(read(session, test));
     for (const Model& model : models) tests.push_back(&model);
+    CompareReport report(report_.empty() ? 0 : view_count(options_, reference), tests.size());
     const std::vector<Comparison> found = session.phase("compare", [&] {
       return compare(reference, tests, options_, session.context,
-                     animation_ ? static_cast<int>(*animation_) : -1, time_s_.value_or(0));
+                     animation_ ? static_cast<int>(*animation_) : -1, time_s_.value_or(0),
+                     report_.empty() ? CompareObserver{} : report.observer());
     });
+    if (!report_.empty()) session.phase("report", [&] { write_report(report, reference, models, found); });
     tell(session, reference, models, found);
     return 0;
   }
 
  private:
+  std::vector<std::string> inputs() const {
+    std::vector<std::string> all = tests_;
+    all.push_back(reference_);
+    return all;
+  }
+
+  static void check_report_output(const std::filesystem::path& path, bool force) {
+    if (path.extension() != ".html") {
+      throw Error(ErrorKind::usage, "is not the name of a page", path.string(),
+                  "use a name that ends in .html");
+    }
+    check_place(path, force);
+  }
+
+  static ReportModel report_model(const std::string& path, const Model& model) {
+    const ModelCounts sizes = counts(model);
+    return {std::filesystem::path(path).filename().string(), sizes.triangles, sizes.split_vertices,
+            measure_input(path, model).kinds};
+  }
+
+  void write_report(const CompareReport& report, const Model& reference, const std::vector<Model>& models,
+                    const std::vector<Comparison>& found) const {
+    std::vector<ReportModel> shown;
+    for (std::size_t i = 0; i < models.size(); ++i) shown.push_back(report_model(tests_[i], models[i]));
+    const std::string page = report.html(report_model(reference_, reference), shown, found);
+    OutputFile file;
+    const auto* bytes = reinterpret_cast<const std::byte*>(page.data());
+    file.bytes.assign(bytes, bytes + page.size());
+    write_files(report_, {&file, 1}, force_);
+  }
+
   Model read(Session& session, const std::string& path) const {
     return session.phase("read", [&] { return read_model(path, read_options_, session.context); });
   }
@@ -118,6 +159,7 @@ class Compare : public Verb {
                   {"triangles", counts(model).triangles}};
     };
     session.report["reference"] = describe_file(reference_, reference);
+    if (!report_.empty()) session.report["outputs"] = Json::array({{{"path", report_}}});
     Json& results = session.report["results"] = Json::array();
     TextTable table("lrrrrrrrrrr");
     table.row({"", "triangles", "bytes", "FLIP lit", "base", "MS-SSIM lit", "base", "PSNR lit", "base",
@@ -149,6 +191,8 @@ class Compare : public Verb {
 
   std::string reference_;
   std::vector<std::string> tests_;
+  std::string report_;
+  bool force_ = false;
   std::optional<std::int64_t> animation_;
   std::optional<double> time_s_;
   CompareOptions options_;

@@ -50,6 +50,17 @@ TEST_F(CompareVerb, ComparesAcrossFormats) {
   EXPECT_LT(json["results"][0]["base_color"]["flip"], 0.01);
 }
 
+TEST_F(CompareVerb, WritesAPage) {
+  const std::string page = folder_ / "page.html";
+  const std::vector<std::string> words{"compare",     grid_, small_,     "--views", "tetrahedron",
+                                       "--view-size", "48",  "--report", page};
+  ASSERT_EQ(fovea(words).code, 0);
+  EXPECT_THAT(read_text(page), HasSubstr("small.glb"));
+  EXPECT_THAT(read_text(page), HasSubstr("</html>"));
+  EXPECT_THAT(fovea(words).err, HasSubstr("--force"));
+  EXPECT_THAT(fovea({"compare", grid_, small_, "--report", folder_ / "page.txt"}).err, HasSubstr(".html"));
+}
+
 TEST_F(CompareVerb, RefusesWhatItCannotDo) {
   EXPECT_THAT(fovea({"compare", grid_}).err, HasSubstr("MODEL is missing"));
   EXPECT_EQ(fovea({"compare", grid_, folder_ / "no.glb"}).code, 3);

@@ -82,6 +82,20 @@ std::filesystem::path utf8_path(const std::string& text) {
 
 }  // namespace
 
+std::string encode_base64(std::span<const std::uint8_t> bytes) {
+  static constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = i; k < i + 3; ++k) group = group << 8 | (k < bytes.size() ? bytes[k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += k > bytes.size() - i ? '=' : kDigits[group >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
 bool is_data_uri(std::string_view uri) {
   constexpr std::string_view kScheme = "data:";
   return uri.size() >= kScheme.size() &&

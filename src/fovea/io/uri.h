@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +21,9 @@ bool is_data_uri(std::string_view uri);
 /// Decodes a data URI: base64 (padding optional, white space ignored) or percent-encoded; never more
 /// bytes than the text has. Throws Error(format) without a place.
 DataUri decode_data_uri(std::string_view uri);
+
+/// Base64 in the standard alphabet, padded.
+std::string encode_base64(std::span<const std::uint8_t> bytes);
 
 /// Resolves %XX. Throws Error(format) without a place for a "%" without two hexadecimal digits.
 std::string percent_decode(std::string_view text);

@@ -21,9 +21,8 @@ struct PreparedPicture {
       : picture(std::move(p)), ssim(picture.color), flip(picture.color, pixels_per_degree) {}
 };
 
-ImageScores score(const PreparedPicture& reference, const Picture& test) {
+ImageScores score(const PreparedPicture& reference, const Picture& test, const Plane& flip) {
   const Plane mask = foreground(reference.picture.coverage, test.coverage);
-  const Plane flip = reference.flip.map(test.color);
   ImageScores s;
   s.mse = mean_squared_error(reference.picture.color, test.color);
   s.mse_foreground = mean_squared_error(reference.picture.color, test.color, &mask);
@@ -74,6 +73,40 @@ double diagonal_of(const TriangleSoup& soup) {
   return box.diagonal();
 }
 
+/// How far the vertices of each mesh are from a surface, of `unit`; of a mesh that is shown several times, in
+/// its first place.
+std::vector<VertexField> distance_fields(const RenderScene& scene, const ClosestPoint& surface, double unit,
+                                         const Context& context) {
+  std::vector<VertexField> fields;
+  for (const SceneMesh& mesh : scene.meshes) {
+    if (mesh.mesh_index >= fields.size()) fields.resize(mesh.mesh_index + 1);
+    VertexField& field = fields[mesh.mesh_index];
+    if (!field.empty()) continue;
+    const std::vector<Vec3f>& positions = mesh.surface.positions;
+    field = VertexField(positions.size());
+    parallel_for(context, positions.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        field.values()[v] = static_cast<float>(surface.nearest(Vec3d(positions[v])).distance / unit);
+    });
+  }
+  return fields;
+}
+
+void show_distances(const TriangleSoup& reference, const std::vector<RenderScene>& tests,
+                    const std::vector<View>& views, RenderOptions options, const Context& context,
+                    const CompareObserver& observer) {
+  const ClosestPoint surface(reference);
+  options.pass = Pass::field;
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    const std::vector<VertexField> fields =
+        distance_fields(tests[t], surface, kHottestDistance * diagonal_of(reference), context);
+    parallel_for(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        observer.distances(v, t, render(tests[t], views[v], options, context, fields));
+    });
+  }
+}
+
 }  // namespace
 
 OptionList describe(CompareOptions& o) {
@@ -91,7 +124,8 @@ OptionList describe(CompareOptions& o) {
 }
 
 ImageScores score(const Picture& reference, const Picture& test, double pixels_per_degree) {
-  return score(PreparedPicture(Picture(reference), pixels_per_degree), test);
+  const PreparedPicture prepared(Picture(reference), pixels_per_degree);
+  return score(prepared, test, prepared.flip.map(test.color));
 }
 
 TriangleSoup triangles_of(const RenderScene& scene) {
@@ -107,8 +141,8 @@ TriangleSoup triangles_of(const RenderScene& scene) {
 }
 
 std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
-                                const CompareOptions& options, Context& context, int animation,
-                                double time_s) {
+                                const CompareOptions& options, Context& context, int animation, double time_s,
+                                const CompareObserver& observer) {
   const Pose pose = pose_of(reference, animation, time_s);
   const RenderScene scene = make_render_scene(reference, pose, context);
   if (scene.triangle_count == 0)
@@ -137,7 +171,9 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
           const Picture picture = render(test_scenes[t], views[v], pass, context);
           ViewComparison& view = result[t].views[v];
           view.name = views[v].name;
-          view.passes[p] = score(prepared, picture);
+          const Plane flip = prepared.flip.map(picture.color);
+          view.passes[p] = score(prepared, picture, flip);
+          if (observer.pictures) observer.pictures(v, t, kJudgedPasses[p], prepared.picture, picture, flip);
           view.silhouette_iou = silhouette_iou(prepared.picture.coverage, picture.coverage);
         }
       }
@@ -152,6 +188,7 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
     result[t].distance =
         surface_distance(surface, triangles_of(test_scenes[t]), options.distance_samples, context);
   }
+  if (observer.distances) show_distances(surface, test_scenes, views, render_options, context, observer);
   context.advance_or_throw("compare", 1);
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,6 +59,19 @@ struct CompareOptions {
 };
 OptionList describe(CompareOptions& options);
 
+/// Whoever wants to see what is compared. Called from any thread, in any order, each view, test and pass
+/// once.
+struct CompareObserver {
+  /// Both pictures of a view, and FLIP's error map.
+  std::function<void(std::size_t view, std::size_t test, JudgedPass pass, const Picture& reference,
+                     const Picture& picture, const Plane& flip)>
+      pictures;
+  /// A picture of the test in which heat is the distance to the reference: 0 … `kHottestDistance`.
+  std::function<void(std::size_t view, std::size_t test, const Picture& heat)> distances;
+};
+/// Of the reference's diagonal.
+constexpr double kHottestDistance = 0.005;
+
 /// Compares each of `tests` with the reference: the same cameras (§6 of the protocol of Yang et al. 2016: 24
 /// views at the vertices of the small rhombicuboctahedron), base colour and lit, and the surfaces themselves.
 /// Models are in their rest pose, or at `time_s` of their animation number `animation` if it is not negative.
@@ -67,7 +81,7 @@ OptionList describe(CompareOptions& options);
 /// their number.
 std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
                                 const CompareOptions& options, Context& context, int animation = -1,
-                                double time_s = 0);
+                                double time_s = 0, const CompareObserver& observer = {});
 
 /// How like `test` is to `reference`, two pictures of the same size.
 ImageScores score(const Picture& reference, const Picture& test,

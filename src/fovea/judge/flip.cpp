@@ -32,15 +32,16 @@ const Vec3d kWhite = multiply(kToXyz, {1, 1, 1});
 
 Vec3d to_xyz(Vec3d rgb) { return multiply(kToXyz, rgb); }
 
-/// The inverse of `to_xyz`, by Cramer's rule.
-Vec3d to_rgb(Vec3d xyz) {
-  static const Vec3d c0{kToXyz[0][0], kToXyz[1][0], kToXyz[2][0]},
-      c1{kToXyz[0][1], kToXyz[1][1], kToXyz[2][1]}, c2{kToXyz[0][2], kToXyz[1][2], kToXyz[2][2]};
-  static const double determinant = dot(c0, cross(c1, c2));
-  static const Vec3d r0 = cross(c1, c2) / determinant, r1 = cross(c2, c0) / determinant,
-                     r2 = cross(c0, c1) / determinant;
-  return {dot(r0, xyz), dot(r1, xyz), dot(r2, xyz)};
+/// The inverse of `kToXyz`, by Cramer's rule: its rows.
+std::array<Vec3d, 3> inverse_rows() {
+  const auto column = [](int k) { return Vec3d{kToXyz[0][k], kToXyz[1][k], kToXyz[2][k]}; };
+  const Vec3d c0 = column(0), c1 = column(1), c2 = column(2);
+  const double determinant = dot(c0, cross(c1, c2));
+  return {cross(c1, c2) / determinant, cross(c2, c0) / determinant, cross(c0, c1) / determinant};
 }
+const std::array<Vec3d, 3> kFromXyz = inverse_rows();
+
+Vec3d to_rgb(Vec3d xyz) { return {dot(kFromXyz[0], xyz), dot(kFromXyz[1], xyz), dot(kFromXyz[2], xyz)}; }
 
 /// CIELAB of linear RGB, chroma scaled by lightness (Hunt effect).
 Vec3d hunt_lab(Vec3d rgb) {
@@ -62,7 +63,7 @@ double largest_difference() {
 }
 
 const std::array<double, 256>& light_table() {
-  static const std::array<double, 256> table = [] {
+  static const std::array<double, 256> kTable = [] {
     std::array<double, 256> t{};
     for (std::size_t i = 0; i < 256; ++i) {
       const double x = static_cast<double>(i) / 255;
@@ -70,7 +71,7 @@ const std::array<double, 256>& light_table() {
     }
     return t;
   }();
-  return table;
+  return kTable;
 }
 
 // --- Filters --------------------------------------------------------------------------------------------
@@ -189,7 +190,7 @@ FlipReference::Seen FlipReference::see(const Image8& image) const {
 }
 
 Plane FlipReference::map(const Image8& test) const {
-  static const double largest = largest_difference();
+  const double largest = largest_difference();
   const Seen seen = see(test);
   Plane result(width_, height_);
   for (std::size_t i = 0; i < result.values.size(); ++i) {

@@ -17,8 +17,8 @@ constexpr float kC1 = (0.01f * 255) * (0.01f * 255), kC2 = (0.03f * 255) * (0.03
 constexpr std::array<double, 5> kWeights{0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
 
 Plane windowed(const Plane& plane) {
-  static const std::vector<float> kernel = gaussian_kernel(kSigma, kRadius);
-  return filter(plane, kernel, kernel, Border::crop);
+  static const std::vector<float> kKernel = gaussian_kernel(kSigma, kRadius);
+  return filter(plane, kKernel, kKernel, Border::crop);
 }
 
 /// Luma around 0: variances are differences of squares, which then lose less.

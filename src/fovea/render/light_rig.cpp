@@ -38,8 +38,8 @@ struct Rig {
 };
 
 const Rig& rig() {
-  static const Rig r;
-  return r;
+  static const Rig kRig;
+  return kRig;
 }
 
 float fifth_power(float x) {

@@ -50,8 +50,8 @@ struct DisplayCurve {
 };
 
 const DisplayCurve& display_curve() {
-  static const DisplayCurve curve;
-  return curve;
+  static const DisplayCurve kCurve;
+  return kCurve;
 }
 
 // --- Looking up -----------------------------------------------------------------------------------------
