@@ -1,10 +1,10 @@
 #include "inspect.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "fovea/model/weld.h"
+#include "fovea/surface/pose.h"
 
 namespace fovea::cli {
 
@@ -71,16 +71,6 @@ std::vector<TextureUse> texture_uses(const Model& model, const Material& materia
   return uses;
 }
 
-double duration_seconds(const Animation& animation) {
-  double end = 0;
-  for (const AnimationSampler& sampler : animation.samplers) {
-    for (const float time : sampler.input.to_floats()) {
-      if (std::isfinite(time)) end = std::max(end, static_cast<double>(time));
-    }
-  }
-  return end;
-}
-
 std::string generator_of(const Model& model) {
   const Json json = Json::parse(model.json, nullptr, false);
   if (!json.is_object() || !json.contains("asset") || !json["asset"].is_object()) return {};
@@ -122,7 +112,7 @@ ModelFacts inspect(const Model& model, Context& context) {
   for (const Material& material : model.materials) facts.textures.push_back(texture_uses(model, material));
   for (const EncodedImage& image : model.images) facts.images.push_back(image_info(image.bytes));
   for (const Animation& animation : model.animations) {
-    facts.animation_seconds.push_back(duration_seconds(animation));
+    facts.animation_seconds.push_back(duration_s(animation));
   }
   facts.box = bounds(model);
   facts.generator = generator_of(model);

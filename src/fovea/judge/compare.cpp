@@ -123,11 +123,6 @@ OptionList describe(CompareOptions& o) {
   return options;
 }
 
-ImageScores score(const Picture& reference, const Picture& test, double pixels_per_degree) {
-  const PreparedPicture prepared(Picture(reference), pixels_per_degree);
-  return score(prepared, test, prepared.flip.map(test.color));
-}
-
 TriangleSoup triangles_of(const RenderScene& scene) {
   TriangleSoup soup;
   for (const SceneMesh& mesh : scene.meshes) {

@@ -72,9 +72,10 @@ struct CompareObserver {
 /// Of the reference's diagonal.
 constexpr double kHottestDistance = 0.005;
 
-/// Compares each of `tests` with the reference: the same cameras (§6 of the protocol of Yang et al. 2016: 24
-/// views at the vertices of the small rhombicuboctahedron), base colour and lit, and the surfaces themselves.
-/// Models are in their rest pose, or at `time_s` of their animation number `animation` if it is not negative.
+/// Compares each of `tests` with the reference: the same cameras (by default those of the
+/// protocol of Yang et al. 2016: 24 at the vertices of the small rhombicuboctahedron), base colour and lit,
+/// and the surfaces themselves. Models are in their rest pose, or at `time_s` of their animation number
+/// `animation` if it is not negative.
 ///
 /// Throws Error(usage) for a reference with no triangles and for an animation that a model lacks. The same
 /// for any number of threads. Views are worked on one by one per thread, so that memory does not grow with
@@ -82,10 +83,6 @@ constexpr double kHottestDistance = 0.005;
 std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
                                 const CompareOptions& options, Context& context, int animation = -1,
                                 double time_s = 0, const CompareObserver& observer = {});
-
-/// How like `test` is to `reference`, two pictures of the same size.
-ImageScores score(const Picture& reference, const Picture& test,
-                  double pixels_per_degree = kFlipPixelsPerDegree);
 
 /// All triangles of a scene, in world space.
 TriangleSoup triangles_of(const RenderScene& scene);

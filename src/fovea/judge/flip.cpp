@@ -6,6 +6,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/math.h"
+#include "fovea/render/mip_map.h"
 
 namespace fovea {
 
@@ -60,18 +61,6 @@ double hyab(Vec3d p, Vec3d q) { return std::abs(p.x - q.x) + std::hypot(p.y - q.
 /// The largest colour difference that counts: between green and blue.
 double largest_difference() {
   return std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kColorExponent);
-}
-
-const std::array<double, 256>& light_table() {
-  static const std::array<double, 256> kTable = [] {
-    std::array<double, 256> t{};
-    for (std::size_t i = 0; i < 256; ++i) {
-      const double x = static_cast<double>(i) / 255;
-      t[i] = x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
-    }
-    return t;
-  }();
-  return kTable;
 }
 
 // --- Filters --------------------------------------------------------------------------------------------
@@ -149,10 +138,9 @@ FlipReference::Seen FlipReference::see(const Image8& image) const {
     throw Error(ErrorKind::usage, "images of different size cannot be compared");
   // Opponent colours: YCxCz, linear in XYZ.
   Plane y(width_, height_), cx(width_, height_), cz(width_, height_), achromatic(width_, height_);
-  const std::array<double, 256>& light = light_table();
   for (std::size_t i = 0; i < y.values.size(); ++i) {
     const std::uint8_t* p = image.pixels.data() + 3 * i;
-    const Vec3d xyz = to_xyz({light[p[0]], light[p[1]], light[p[2]]});
+    const Vec3d xyz = to_xyz(Vec3d(Vec3f{to_light(p[0]), to_light(p[1]), to_light(p[2])}));
     const double x = xyz.x / kWhite.x, lum = xyz.y / kWhite.y, z = xyz.z / kWhite.z;
     y.values[i] = static_cast<float>(116 * lum - 16);
     cx.values[i] = static_cast<float>(500 * (x - lum));

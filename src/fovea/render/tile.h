@@ -40,7 +40,7 @@ class TileSamples {
   static std::size_t index(int x, int y) {
     return static_cast<std::size_t>(y) * SampleGrid::kTileSamples + static_cast<std::size_t>(x);
   }
-  /// Calls span(y, x0, x1, nearness at sample x0, its slope) for the samples [x0, x1) that each row has.
+  /// Calls span(y, x0, x1, plane of nearness) for the samples [x0, x1) that each row has.
   template <class F>
   void for_spans(const ScreenTriangle& triangle, F&& span) const;
 

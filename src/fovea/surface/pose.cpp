@@ -253,8 +253,9 @@ Pose pose_at(const Model& model, std::size_t animation, double time_s) {
 double duration_s(const Animation& animation) {
   double end = 0;
   for (const AnimationSampler& sampler : animation.samplers) {
-    const std::vector<float> times = sampler.input.to_floats();
-    if (!times.empty()) end = std::max(end, static_cast<double>(times.back()));
+    for (const float time : sampler.input.to_floats()) {
+      if (std::isfinite(time)) end = std::max(end, static_cast<double>(time));
+    }
   }
   return end;
 }
