@@ -84,9 +84,6 @@ class Compare : public Verb {
     arguments.add({"REFERENCE", "The model that the others should look like.", &reference_});
     arguments.add({"MODEL", "One or more models to compare with it.", nullptr, true, &tests_});
     arguments.add("Comparison", describe(options_));
-    arguments.add("Comparison", {{"animation", "Pose all models by this animation, counted from 0.",
-                                  &animation_, "", 0, 1e6},
-                                 {"time", "Moment of the animation.", &time_s_, "seconds", 0, 1e9}});
     arguments.add("Output",
                   {{"report", "Write a page with pictures of every view, ending in .html.", &report_, "file"},
                    describe_force(force_)});
@@ -94,28 +91,32 @@ class Compare : public Verb {
   }
 
   int run(Session& session) override {
-    if (time_s_ && !animation_)
-      throw Error(ErrorKind::usage, "--time needs --animation", {}, "for example --animation 0");
     check_input(reference_);
     if (!report_.empty()) check_output(report_, inputs(), force_, check_report_output);
     for (const std::string& test : tests_) check_input(test);
-    const Model reference = read(session, reference_);
-    std::vector<Model> models;
-    std::vector<const Model*> tests;
-    for (const std::string& test : tests_) models.push_back(read(session, test));
-    for (const Model& model : models) tests.push_back(&model);
-    CompareReport report(report_.empty() ? 0 : view_count(options_, reference), tests.size());
+    const Compared reference = read(session, reference_);
+    std::vector<Compared> tests;
+    std::vector<const Model*> models;
+    for (const std::string& test : tests_) tests.push_back(read(session, test));
+    for (const Compared& test : tests) models.push_back(&test.model);
+    CompareReport report;
     const std::vector<Comparison> found = session.phase("compare", [&] {
-      return compare(reference, tests, options_, session.context,
-                     animation_ ? static_cast<int>(*animation_) : -1, time_s_.value_or(0),
+      return compare(reference.model, models, options_, session.context,
                      report_.empty() ? CompareObserver{} : report.observer());
     });
-    if (!report_.empty()) session.phase("report", [&] { write_report(report, reference, models, found); });
-    tell(session, reference, models, found);
+    if (!report_.empty()) session.phase("report", [&] { write_report(report, reference, tests, found); });
+    tell(session, reference, tests, found);
     return 0;
   }
 
  private:
+  /// A model as it was read.
+  struct Compared {
+    std::string path;
+    Model model;
+    Snapshot size;
+  };
+
   std::vector<std::string> inputs() const {
     std::vector<std::string> all = tests_;
     all.push_back(reference_);
@@ -130,57 +131,58 @@ class Compare : public Verb {
     check_place(path, force);
   }
 
-  static ReportModel report_model(const std::string& path, const Model& model) {
-    const ModelCounts sizes = counts(model);
-    return {std::filesystem::path(path).filename().string(), sizes.triangles, sizes.split_vertices,
-            measure_input(path, model).kinds};
+  static ReportModel report_model(const Compared& c) {
+    return {std::filesystem::path(c.path).filename().string(), c.size.counts.triangles,
+            c.size.counts.split_vertices, c.size.bytes.kinds};
   }
 
-  void write_report(const CompareReport& report, const Model& reference, const std::vector<Model>& models,
-                    const std::vector<Comparison>& found) const {
+  void write_report(const CompareReport& report, const Compared& reference,
+                    const std::vector<Compared>& tests, const std::vector<Comparison>& found) const {
     std::vector<ReportModel> shown;
-    for (std::size_t i = 0; i < models.size(); ++i) shown.push_back(report_model(tests_[i], models[i]));
-    const std::string page = report.html(report_model(reference_, reference), shown, found);
+    for (const Compared& test : tests) shown.push_back(report_model(test));
+    const std::string page = report.html(report_model(reference), shown, found);
     OutputFile file;
     const auto* bytes = reinterpret_cast<const std::byte*>(page.data());
     file.bytes.assign(bytes, bytes + page.size());
     write_files(report_, {&file, 1}, force_);
   }
 
-  Model read(Session& session, const std::string& path) const {
-    return session.phase("read", [&] { return read_model(path, read_options_, session.context); });
+  Compared read(Session& session, const std::string& path) const {
+    return session.phase("read", [&] {
+      Model model = read_model(path, read_options_, session.context);
+      const Snapshot size = snapshot(model, measure_input(path, model));
+      return Compared{path, std::move(model), size};
+    });
   }
 
-  void tell(Session& session, const Model& reference, const std::vector<Model>& models,
+  static Json file_json(const Compared& c) {
+    return {{"path", c.path}, {"bytes", c.size.bytes.files}, {"triangles", c.size.counts.triangles}};
+  }
+
+  void tell(Session& session, const Compared& reference, const std::vector<Compared>& tests,
             const std::vector<Comparison>& found) const {
-    const auto describe_file = [](const std::string& path, const Model& model) {
-      return Json{{"path", path},
-                  {"bytes", measure_input(path, model).files},
-                  {"triangles", counts(model).triangles}};
-    };
-    session.report["reference"] = describe_file(reference_, reference);
+    session.report["reference"] = file_json(reference);
     if (!report_.empty()) session.report["outputs"] = Json::array({{{"path", report_}}});
     Json& results = session.report["results"] = Json::array();
     TextTable table("lrrrrrrrrrr");
     table.row({"", "triangles", "bytes", "FLIP lit", "base", "MS-SSIM lit", "base", "PSNR lit", "base",
                "outline", "surface"});
-    const auto sizes = [&](const std::string& path, const Model& model) {
-      return std::pair{count_text(counts(model).triangles), bytes_text(measure_input(path, model).files)};
+    const auto row = [&](const Compared& c, std::vector<std::string> scores) {
+      scores.insert(scores.begin(),
+                    {printable(c.path), count_text(c.size.counts.triangles), bytes_text(c.size.bytes.files)});
+      table.row(scores);
     };
-    const auto [triangles, bytes] = sizes(reference_, reference);
-    table.row({printable(reference_), triangles, bytes});
+    row(reference, {});
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Comparison& c = found[i];
-      Json json = describe_file(tests_[i], models[i]);
+      Json json = file_json(tests[i]);
       json.update(to_json(c));
       results.push_back(std::move(json));
       const ImageScores &lit = c[JudgedPass::lit], &base = c[JudgedPass::base_color];
-      const auto [count, size] = sizes(tests_[i], models[i]);
-      table.row({printable(tests_[i]), count, size, fmt::format("{:.4f}", lit.flip),
-                 fmt::format("{:.4f}", base.flip), fmt::format("{:.4f}", lit.ms_ssim),
-                 fmt::format("{:.4f}", base.ms_ssim), decibels(lit.psnr), decibels(base.psnr),
-                 fmt::format("{:.4f}", c.silhouette_iou),
-                 share_text(c.distance.mean() / c.reference_diagonal)});
+      row(tests[i], {fmt::format("{:.4f}", lit.flip), fmt::format("{:.4f}", base.flip),
+                     fmt::format("{:.4f}", lit.ms_ssim), fmt::format("{:.4f}", base.ms_ssim),
+                     decibels(lit.psnr), decibels(base.psnr), fmt::format("{:.4f}", c.silhouette_iou),
+                     share_text(c.distance.mean() / c.reference_diagonal)});
     }
     session.print(table.text(0));
     session.print(fmt::format(
@@ -193,8 +195,6 @@ class Compare : public Verb {
   std::vector<std::string> tests_;
   std::string report_;
   bool force_ = false;
-  std::optional<std::int64_t> animation_;
-  std::optional<double> time_s_;
   CompareOptions options_;
   ReadOptions read_options_;
 };

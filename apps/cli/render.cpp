@@ -45,15 +45,13 @@ class Render : public Verb {
         {{"view", "Draw this view of the set alone, counted from 1; 0 draws all.", &view_, "", 0, 4096},
          {"columns", "Views side by side in a sheet; 0 makes it about square.", &columns_, "", 0, 4096}});
     arguments.add("Picture", describe(options_));
-    arguments.add(
-        "Picture",
-        {{"background", "Colour behind the model, as #RRGGBB.", &background_, "colour"},
-         {"field",
-          "Numbers per vertex for --pass field: a .npy or .csv file, or the name of a vertex "
-          "attribute such as _IMPORTANCE.",
-          &field_, "file or name"},
-         {"animation", "Pose the model by this animation, counted from 0.", &animation_, "", 0, 1e6},
-         {"time", "Moment of the animation.", &time_s_, "seconds", 0, 1e9}});
+    arguments.add("Picture",
+                  {{"background", "Colour behind the model, as #RRGGBB.", &background_, "colour"},
+                   {"field",
+                    "Numbers per vertex for --pass field: a .npy or .csv file, or the name of a vertex "
+                    "attribute such as _IMPORTANCE.",
+                    &field_, "file or name"}});
+    arguments.add("Picture", describe(pose_options_));
     arguments.add("Output", {describe_output(output_), describe_force(force_)});
     arguments.add("Limits", describe(read_options_));
   }
@@ -64,9 +62,10 @@ class Render : public Verb {
         session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
     std::vector<VertexField> fields;
     if (!field_.empty()) fields = session.phase("field", [&] { return load_range(model, session); });
+    const Pose pose = pose_of(model, pose_options_);
     const RenderScene scene =
-        session.phase("prepare", [&] { return make_render_scene(model, pose_of(model), session.context); });
-    const std::vector<View> views = chosen_views(model, scene);
+        session.phase("prepare", [&] { return make_render_scene(model, pose, session.context); });
+    const std::vector<View> views = chosen_views(model, pose, scene);
     Image8 sheet = empty_sheet(views.size());
     const std::vector<Picture> pictures =
         session.phase("draw", [&] { return render_views(scene, views, options_, session.context, fields); });
@@ -84,8 +83,6 @@ class Render : public Verb {
       throw Error(ErrorKind::usage, "--pass field and --field go together", {},
                   "--field names the numbers that --pass field shows");
     }
-    if (time_s_ && !animation_)
-      throw Error(ErrorKind::usage, "--time needs --animation", {}, "for example --animation 0");
     options_.background = parse_color(background_);
   }
 
@@ -100,11 +97,6 @@ class Render : public Verb {
       return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16));
     };
     return {channel(1), channel(3), channel(5)};
-  }
-
-  Pose pose_of(const Model& model) const {
-    if (!animation_) return rest_pose(model);
-    return pose_at(model, static_cast<std::size_t>(*animation_), time_s_.value_or(0));
   }
 
   /// The fields scaled to [0, 1] over all meshes; what is not a number is 0.
@@ -125,12 +117,8 @@ class Render : public Verb {
     return fields;
   }
 
-  std::vector<View> chosen_views(const Model& model, const RenderScene& scene) const {
-    std::vector<View> views = view_options_.set == ViewSet::cameras ? camera_views(model, pose_of(model))
-                                                                    : make_views(view_options_, scene.sphere);
-    if (views.empty()) {
-      throw Error(ErrorKind::usage, "the model has no cameras", input_, "choose another set with --views");
-    }
+  std::vector<View> chosen_views(const Model& model, const Pose& pose, const RenderScene& scene) const {
+    std::vector<View> views = views_of(view_options_, model, pose, scene);
     if (view_ == 0) return views;
     if (static_cast<std::size_t>(view_) > views.size()) {
       throw Error(ErrorKind::usage, fmt::format("there are only {} views", views.size()), "--view");
@@ -189,9 +177,8 @@ class Render : public Verb {
   std::string background_ = "#808080";
   std::int64_t view_ = 0;
   std::int64_t columns_ = 0;
-  std::optional<std::int64_t> animation_;
-  std::optional<double> time_s_;
   bool force_ = false;
+  PoseOptions pose_options_;
   ViewOptions view_options_;
   RenderOptions options_;
   ReadOptions read_options_;

@@ -118,8 +118,13 @@ TEST(Compare, AnimationsAreComparedInTheirPose) {
   Context context;
   const Model* const tests[] = {&stiff};
   EXPECT_EQ(compare(model, tests, quick(), context)[0][JudgedPass::lit].flip, 0);
-  EXPECT_GT(compare(model, tests, quick(), context, 0, 1)[0][JudgedPass::lit].flip, 0);
-  EXPECT_THROW(compare(model, tests, quick(), context, 5, 0), Error) << "it has no such animation";
+  CompareOptions options = quick();
+  options.pose = {0, 1};
+  EXPECT_GT(compare(model, tests, options, context)[0][JudgedPass::lit].flip, 0);
+  options.pose = {5, 0};
+  EXPECT_THROW(compare(model, tests, options, context), Error) << "it has no such animation";
+  options.pose = {std::nullopt, 1};
+  EXPECT_THROW(compare(model, tests, options, context), Error) << "a time of no animation";
 }
 
 }  // namespace

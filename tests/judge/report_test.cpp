@@ -29,8 +29,8 @@ class Report : public ::testing::Test {
     Context context;
     context.threads = threads;
     const Model* const tests[] = {&small_, &model_};
-    CompareReport report(view_count(options_, model_), 2);
-    const auto found = compare(model_, tests, options_, context, -1, 0, report.observer());
+    CompareReport report;
+    const auto found = compare(model_, tests, options_, context, report.observer());
     const ReportModel shown[] = {{name, 10, 20, {1, 2, 3, 4}}, {"same", 5, 6, {}}};
     return report.html({"reference", 100, 200, {}}, shown, found);
   }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "fovea/base/srgb.h"
+
 namespace fovea {
 namespace {
 
@@ -15,27 +17,6 @@ Image8 row(const std::vector<int>& values) {
 }
 
 UvSlopes slope(double du) { return {{static_cast<float>(du), 0}, {0, 0}}; }
-
-TEST(MipMap, DisplayValuesAndLightAreInverse) {
-  for (int i = 0; i < 256; ++i) {
-    const auto display = static_cast<std::uint8_t>(i);
-    EXPECT_EQ(to_display(to_light(display)), i);
-    // The standard's curve, to the precision of a float.
-    const double x = i / 255.0;
-    EXPECT_NEAR(to_light(display), x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4), 1e-7);
-  }
-  EXPECT_EQ(to_display(-1), 0);
-  EXPECT_EQ(to_display(std::nanf("")), 0);
-  EXPECT_EQ(to_display(7), 255);
-}
-
-TEST(MipMap, DisplayValuesAreTheNearest) {
-  for (int i = 0; i <= 5000; ++i) {
-    const double light = i / 5000.0;
-    const double display = light <= 0.0031308 ? light * 12.92 : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-    EXPECT_NEAR(to_display(static_cast<float>(light)), display * 255, 0.5001) << light;
-  }
-}
 
 TEST(MipMap, LevelsAverageLight) {
   Image8 checker(2, 2, 3, ColorEncoding::srgb);

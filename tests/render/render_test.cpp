@@ -7,6 +7,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/random.h"
+#include "fovea/base/srgb.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/render/shade.h"
 #include "support/meshes.h"
@@ -288,6 +289,39 @@ TEST(Render, TheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(a[i].coverage.pixels, b[i].coverage.pixels);
     EXPECT_EQ(a[i].color.pixels, render(scene, views[i], options, four).color.pixels);
   }
+}
+
+TEST(Render, PassesTogetherAreThePassesAlone) {
+  Model model = test::model_of({test::torus(32, 16), test::icosphere(2)});
+  model.materials = {colored(1, 0.5, 0.25, 0.5), colored(0.2, 0.4, 0.9)};
+  model.materials[0].alpha_mode = AlphaMode::blend;
+  for (std::size_t m = 0; m < 2; ++m) {
+    for (Part& part : model.meshes[m].surface.parts) part.material = static_cast<int>(m);
+  }
+  Context context;
+  const RenderScene scene = make_render_scene(model, rest_pose(model), context);
+  const View view = make_views({}, scene.sphere)[3];
+  const Pass passes[] = {Pass::base_color, Pass::lit, Pass::normal, Pass::depth, Pass::part};
+  RenderOptions options = flat_options(150);
+  const std::vector<Picture> together = render_passes(scene, view, passes, options, context);
+  ASSERT_EQ(together.size(), std::size(passes));
+  for (std::size_t i = 0; i < std::size(passes); ++i) {
+    options.pass = passes[i];
+    const Picture alone = render(scene, view, options, context);
+    EXPECT_EQ(together[i].color.pixels, alone.color.pixels) << i;
+    EXPECT_EQ(together[i].coverage.pixels, alone.coverage.pixels) << i;
+  }
+}
+
+TEST(Render, OwnCamerasMustBeThere) {
+  const Model model = test::model_of(square(0, -1));
+  Context context;
+  const Pose pose = rest_pose(model);
+  const RenderScene scene = make_render_scene(model, pose, context);
+  ViewOptions options;
+  EXPECT_EQ(views_of(options, model, pose, scene).size(), 24u);
+  options.set = ViewSet::cameras;
+  EXPECT_THROW(views_of(options, model, pose, scene), Error);
 }
 
 TEST(Render, FieldsAreShownAsHeat) {

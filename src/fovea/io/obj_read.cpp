@@ -7,7 +7,7 @@
 #include <map>
 
 #include "fovea/base/error.h"
-#include "fovea/io/color_space.h"
+#include "fovea/base/srgb.h"
 #include "fovea/io/indexed_mesh.h"
 #include "fovea/io/mtl_read.h"
 #include "fovea/io/text_scan.h"

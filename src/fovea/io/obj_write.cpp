@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "fovea/io/color_space.h"
+#include "fovea/base/srgb.h"
 #include "fovea/io/flatten.h"
 #include "fovea/io/mtl_write.h"
 

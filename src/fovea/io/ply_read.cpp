@@ -8,7 +8,7 @@
 #include <map>
 
 #include "fovea/base/error.h"
-#include "fovea/io/color_space.h"
+#include "fovea/base/srgb.h"
 #include "fovea/io/indexed_mesh.h"
 #include "fovea/io/ply_header.h"
 #include "fovea/io/ply_source.h"

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "fovea/base/error.h"
-#include "fovea/io/color_space.h"
+#include "fovea/base/srgb.h"
 #include "fovea/io/flatten.h"
 #include "fovea/model/weld.h"
 

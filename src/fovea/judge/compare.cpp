@@ -21,8 +21,9 @@ struct PreparedPicture {
       : picture(std::move(p)), ssim(picture.color), flip(picture.color, pixels_per_degree) {}
 };
 
-ImageScores score(const PreparedPicture& reference, const Picture& test, const Plane& flip) {
-  const Plane mask = foreground(reference.picture.coverage, test.coverage);
+/// `mask` is what either covers.
+ImageScores score(const PreparedPicture& reference, const Picture& test, const Plane& flip,
+                  const Plane& mask) {
   ImageScores s;
   s.mse = mean_squared_error(reference.picture.color, test.color);
   s.mse_foreground = mean_squared_error(reference.picture.color, test.color, &mask);
@@ -36,10 +37,6 @@ ImageScores score(const PreparedPicture& reference, const Picture& test, const P
   s.flip = mean(flip);
   s.flip_foreground = mean(flip, &mask);
   return s;
-}
-
-Pose pose_of(const Model& model, int animation, double time_s) {
-  return animation < 0 ? rest_pose(model) : pose_at(model, static_cast<std::size_t>(animation), time_s);
 }
 
 /// Means over the views.
@@ -110,7 +107,9 @@ void show_distances(const TriangleSoup& reference, const std::vector<RenderScene
 }  // namespace
 
 OptionList describe(CompareOptions& o) {
-  OptionList options = describe(o.views);
+  OptionList options = describe(o.pose);
+  const OptionList views = describe(o.views);
+  options.insert(options.end(), views.begin(), views.end());
   options.insert(
       options.end(),
       {{"view-size", "Pixels along each side of a view.", &o.size, "pixels", 11, 8192},
@@ -136,43 +135,46 @@ TriangleSoup triangles_of(const RenderScene& scene) {
 }
 
 std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
-                                const CompareOptions& options, Context& context, int animation, double time_s,
+                                const CompareOptions& options, Context& context,
                                 const CompareObserver& observer) {
-  const Pose pose = pose_of(reference, animation, time_s);
+  const Pose pose = pose_of(reference, options.pose);
   const RenderScene scene = make_render_scene(reference, pose, context);
   if (scene.triangle_count == 0)
     throw Error(ErrorKind::usage, "the reference has no triangles to compare with");
   std::vector<RenderScene> test_scenes;
   for (const Model* test : tests)
-    test_scenes.push_back(make_render_scene(*test, pose_of(*test, animation, time_s), context));
-  const std::vector<View> views = options.views.set == ViewSet::cameras
-                                      ? camera_views(reference, pose)
-                                      : make_views(options.views, scene.sphere);
-  if (views.empty())
-    throw Error(ErrorKind::usage, "the reference has no cameras", {}, "choose another set of views");
+    test_scenes.push_back(make_render_scene(*test, pose_of(*test, options.pose), context));
+  const std::vector<View> views = views_of(options.views, reference, pose, scene);
 
   std::vector<Comparison> result(tests.size());
   for (Comparison& comparison : result) comparison.views.resize(views.size());
+  if (observer.begin) observer.begin(views.size(), tests.size());
   RenderOptions render_options;
   render_options.width = render_options.height = options.size;
   render_options.samples = options.samples;
-  parallel_for(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end && !context.cancelled(); ++v) {
+  const auto compare_view = [&](std::size_t v) {
+    const auto draw = [&](const RenderScene& drawn) {
+      return render_passes(drawn, views[v], kPasses, render_options, context);
+    };
+    std::vector<PreparedPicture> prepared;
+    for (Picture& picture : draw(scene)) prepared.emplace_back(std::move(picture), options.pixels_per_degree);
+    const Image8& coverage = prepared.front().picture.coverage;
+    for (std::size_t t = 0; t < tests.size(); ++t) {
+      const std::vector<Picture> pictures = draw(test_scenes[t]);
+      const Plane mask = foreground(coverage, pictures.front().coverage);
+      ViewComparison& view = result[t].views[v];
+      view.name = views[v].name;
+      view.silhouette_iou = silhouette_iou(coverage, pictures.front().coverage);
       for (std::size_t p = 0; p < kPasses.size(); ++p) {
-        RenderOptions pass = render_options;
-        pass.pass = kPasses[p];
-        const PreparedPicture prepared(render(scene, views[v], pass, context), options.pixels_per_degree);
-        for (std::size_t t = 0; t < tests.size(); ++t) {
-          const Picture picture = render(test_scenes[t], views[v], pass, context);
-          ViewComparison& view = result[t].views[v];
-          view.name = views[v].name;
-          const Plane flip = prepared.flip.map(picture.color);
-          view.passes[p] = score(prepared, picture, flip);
-          if (observer.pictures) observer.pictures(v, t, kJudgedPasses[p], prepared.picture, picture, flip);
-          view.silhouette_iou = silhouette_iou(prepared.picture.coverage, picture.coverage);
-        }
+        const Plane flip = prepared[p].flip.map(pictures[p].color);
+        view.passes[p] = score(prepared[p], pictures[p], flip, mask);
+        if (observer.pictures)
+          observer.pictures(v, t, kJudgedPasses[p], prepared[p].picture, pictures[p], flip);
       }
     }
+  };
+  parallel_for(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end && !context.cancelled(); ++v) compare_view(v);
   });
   context.advance_or_throw("compare", 0.9);
 

@@ -51,6 +51,7 @@ struct Comparison {
 };
 
 struct CompareOptions {
+  PoseOptions pose;          ///< Of all models.
   ViewOptions views;         ///< Framed by the reference's bounding sphere, for both models.
   std::int64_t size = 512;   ///< Pixels along each side of a view.
   std::int64_t samples = 2;  ///< As RenderOptions.
@@ -60,8 +61,10 @@ struct CompareOptions {
 OptionList describe(CompareOptions& options);
 
 /// Whoever wants to see what is compared. Called from any thread, in any order, each view, test and pass
-/// once.
+/// once; of one view all tests in order from one thread.
 struct CompareObserver {
+  /// Before all others.
+  std::function<void(std::size_t views, std::size_t tests)> begin;
   /// Both pictures of a view, and FLIP's error map.
   std::function<void(std::size_t view, std::size_t test, JudgedPass pass, const Picture& reference,
                      const Picture& picture, const Plane& flip)>
@@ -74,15 +77,14 @@ constexpr double kHottestDistance = 0.005;
 
 /// Compares each of `tests` with the reference: the same cameras (by default those of the
 /// protocol of Yang et al. 2016: 24 at the vertices of the small rhombicuboctahedron), base colour and lit,
-/// and the surfaces themselves. Models are in their rest pose, or at `time_s` of their animation number
-/// `animation` if it is not negative.
+/// and the surfaces themselves.
 ///
 /// Throws Error(usage) for a reference with no triangles and for an animation that a model lacks. The same
 /// for any number of threads. Views are worked on one by one per thread, so that memory does not grow with
 /// their number.
 std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
-                                const CompareOptions& options, Context& context, int animation = -1,
-                                double time_s = 0, const CompareObserver& observer = {});
+                                const CompareOptions& options, Context& context,
+                                const CompareObserver& observer = {});
 
 /// All triangles of a scene, in world space.
 TriangleSoup triangles_of(const RenderScene& scene);

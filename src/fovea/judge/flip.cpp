@@ -6,7 +6,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/math.h"
-#include "fovea/render/mip_map.h"
+#include "fovea/base/srgb.h"
 
 namespace fovea {
 

@@ -80,11 +80,12 @@ std::string script_text(const Json& json) {
 
 }  // namespace
 
-CompareReport::CompareReport(std::size_t views, std::size_t tests)
-    : reference_(views), tests_(views, std::vector<Shown>(tests)) {}
-
 CompareObserver CompareReport::observer() {
   CompareObserver observer;
+  observer.begin = [this](std::size_t views, std::size_t tests) {
+    reference_.assign(views, {});
+    tests_.assign(views, std::vector<Shown>(tests));
+  };
   observer.pictures = [this](std::size_t view, std::size_t test, JudgedPass pass, const Picture& reference,
                              const Picture& picture, const Plane& flip) {
     const auto slot = [pass](Shown& shown) -> std::string& {
@@ -127,10 +128,4 @@ std::string CompareReport::html(const ReportModel& reference, std::span<const Re
   const std::string place = "/*DATA*/null";
   return page.replace(page.find(place), place.size(), script_text(data));
 }
-
-std::size_t view_count(const CompareOptions& options, const Model& reference) {
-  return options.views.set == ViewSet::cameras ? camera_views(reference, rest_pose(reference)).size()
-                                               : directions(options.views).size();
-}
-
 }  // namespace fovea

@@ -23,8 +23,6 @@ struct ReportModel {
 /// Collects pictures while `compare` runs (pass `observer()`), then writes the page.
 class CompareReport {
  public:
-  CompareReport(std::size_t views, std::size_t tests);
-
   /// Valid as long as this object. Pictures are kept as WebP.
   CompareObserver observer();
 
@@ -40,8 +38,5 @@ class CompareReport {
   std::vector<Shown> reference_;           // [#views]
   std::vector<std::vector<Shown>> tests_;  // [#views][#tests]
 };
-
-/// Number of views that `options` gives for a model.
-std::size_t view_count(const CompareOptions& options, const Model& reference);
 
 }  // namespace fovea

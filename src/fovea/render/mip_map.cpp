@@ -3,10 +3,28 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
+
+#include "fovea/base/srgb.h"
 
 namespace fovea {
 
 namespace {
+
+// Numbers that go together through one register.
+using Float4 [[gnu::vector_size(16)]] = float;
+using Int4 [[gnu::vector_size(16)]] = std::int32_t;
+using Short8 [[gnu::vector_size(16)]] = std::uint16_t;
+using Long2 [[gnu::vector_size(16)]] = std::uint64_t;
+
+/// Four 16-bit numbers in memory as floats.
+Float4 load_floats(const std::uint16_t* from) {
+  std::uint64_t bits;
+  std::memcpy(&bits, from, sizeof bits);
+  const auto numbers = std::bit_cast<Short8>(Long2{bits, 0});
+  const Short8 widened = __builtin_shufflevector(numbers, Short8{}, 0, 8, 1, 9, 2, 10, 3, 11);
+  return __builtin_convertvector(std::bit_cast<Int4>(widened), Float4);
+}
 
 constexpr float kUnit = 65535;
 constexpr float kMostTurns = 1e6f;
@@ -14,47 +32,6 @@ constexpr float kMostTurns = 1e6f;
 constexpr float kSteepest = 1e30f;
 constexpr int kNearest = 9728, kLinear = 9729, kNearestMipNearest = 9984, kLinearMipNearest = 9985,
               kNearestMipLinear = 9986;
-
-// --- The sRGB curve, with nothing from the C library that differs between machines ----------------------
-
-double fifth_root(double x) {
-  double y = 1;  // x is in (0, 1]: Newton's steps come down to the root
-  for (int i = 0; i < 64; ++i) y -= (y - x / (y * y * y * y)) / 5;
-  return y;
-}
-
-/// IEC 61966-2-1, display value to light.
-double light_of(double display) {
-  if (display <= 0.04045) return display / 12.92;
-  const double x = (display + 0.055) / 1.055, root = fifth_root(x);
-  return x * x * root * root;  // x^2.4
-}
-
-struct DisplayCurve {
-  static constexpr int kSteps = 1024;
-  std::array<float, 256> light;                // of each display value
-  std::array<float, 256> ends;                 // light above which the next display value is nearer
-  std::array<std::uint8_t, kSteps + 1> first;  // display value at light i / kSteps
-
-  DisplayCurve() {
-    for (int i = 0; i < 256; ++i) {
-      light[static_cast<std::size_t>(i)] = static_cast<float>(light_of(i / 255.0));
-      ends[static_cast<std::size_t>(i)] = i < 255 ? static_cast<float>(light_of((i + 0.5) / 255)) : 2.0f;
-    }
-    std::size_t value = 0;
-    for (int i = 0; i <= kSteps; ++i) {
-      while (static_cast<float>(i) / kSteps > ends[value]) ++value;
-      first[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(value);
-    }
-  }
-};
-
-const DisplayCurve& display_curve() {
-  static const DisplayCurve kCurve;
-  return kCurve;
-}
-
-// --- Looking up -----------------------------------------------------------------------------------------
 
 /// log2 of a positive number, to 0.0002: the exponent and a quartic over the mantissa.
 float fast_log2(float x) {
@@ -102,24 +79,13 @@ Overlap overlap(int i, int from, int to) {
 
 }  // namespace
 
-std::uint8_t to_display(float light) {
-  const DisplayCurve& curve = display_curve();
-  if (!(light > 0)) return 0;
-  if (light >= 1) return 255;
-  std::uint8_t value = curve.first[static_cast<std::size_t>(light * DisplayCurve::kSteps)];
-  while (light > curve.ends[value]) ++value;
-  return value;
-}
-
-float to_light(std::uint8_t display) { return display_curve().light[display]; }
-
 MipMap::MipMap(const Image8& image, ColorEncoding encoding) {
   std::array<std::uint16_t, 256> value, alpha;
   for (std::size_t i = 0; i < 256; ++i) {
     alpha[i] = static_cast<std::uint16_t>(i * 257);
     value[i] = encoding == ColorEncoding::linear
                    ? alpha[i]
-                   : static_cast<std::uint16_t>(display_curve().light[i] * kUnit + 0.5f);
+                   : static_cast<std::uint16_t>(to_light(static_cast<std::uint8_t>(i)) * kUnit + 0.5f);
   }
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   texels_.reserve(count + count / 3 + 64);
@@ -245,11 +211,9 @@ Footprint MipMap::footprint(Vec2f uv, const UvSlopes& slopes, const Sampler& sam
 }
 
 Rgba MipMap::sample(const Footprint& footprint) const {
-  std::array<float, 4> sum{};
-  for (std::size_t i = 0; i < footprint.count; ++i) {
-    const Texel& texel = texels_[footprint.taps[i].texel];
-    for (std::size_t k = 0; k < 4; ++k) sum[k] += footprint.taps[i].weight * static_cast<float>(texel[k]);
-  }
+  Float4 sum = {};
+  for (std::size_t i = 0; i < footprint.count; ++i)
+    sum += footprint.taps[i].weight * load_floats(texels_[footprint.taps[i].texel].data());
   constexpr float kScale = 1 / kUnit;
   return {sum[0] * kScale, sum[1] * kScale, sum[2] * kScale, sum[3] * kScale};
 }

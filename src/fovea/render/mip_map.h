@@ -82,10 +82,4 @@ class MipMap {
   std::vector<Texel> texels_;  // of all levels: RGBA as light, 65535 is 1
 };
 
-/// Display value (sRGB curve) of an amount of light in [0, 1], as a byte: the nearest. The same bits on every
-/// machine, unlike std::pow.
-std::uint8_t to_display(float light);
-/// Amount of light of a display value.
-float to_light(std::uint8_t display);
-
 }  // namespace fovea

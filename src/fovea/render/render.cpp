@@ -7,6 +7,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/srgb.h"
 #include "fovea/render/screen.h"
 #include "fovea/render/shade.h"
 #include "fovea/render/tile.h"
@@ -53,6 +54,9 @@ Rgba id_color(std::uint32_t id) {
   return {channel(0), channel(8), channel(16), 1};
 }
 
+/// The other passes show numbers as they are.
+bool shows_light(Pass pass) { return pass == Pass::base_color || pass == Pass::lit; }
+
 /// A surface in a pixel: how many samples it has, and where their middle is.
 struct Patch {
   std::uint32_t triangle = kInvalid;
@@ -62,9 +66,10 @@ struct Patch {
 
 class PictureMaker {
  public:
-  PictureMaker(const RenderScene& scene, const View& view, const RenderOptions& options,
-               const Context& context, std::span<const VertexField> fields)
+  PictureMaker(const RenderScene& scene, const View& view, std::span<const Pass> passes,
+               const RenderOptions& options, const Context& context, std::span<const VertexField> fields)
       : scene_(scene),
+        passes_(passes),
         options_(options),
         fields_(fields),
         grid_{static_cast<int>(options.width), static_cast<int>(options.height),
@@ -73,36 +78,37 @@ class PictureMaker {
         bins_(scene, projection_, grid_, context),
         background_{to_light(options.background[0]), to_light(options.background[1]),
                     to_light(options.background[2]), 0} {
-    picture_.color = Image8(grid_.width, grid_.height, 3, ColorEncoding::srgb);
-    picture_.coverage = Image8(grid_.width, grid_.height, 1, ColorEncoding::linear);
+    for ([[maybe_unused]] const Pass pass : passes) {
+      pictures_.push_back({Image8(grid_.width, grid_.height, 3, ColorEncoding::srgb),
+                           Image8(grid_.width, grid_.height, 1, ColorEncoding::linear)});
+    }
     const auto tiles = static_cast<std::size_t>(grid_.columns()) * static_cast<std::size_t>(grid_.rows());
     parallel_for(context, tiles, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t tile = begin; tile < end; ++tile) make_tile(tile);
     });
   }
 
-  Picture take() { return std::move(picture_); }
+  std::vector<Picture> take() { return std::move(pictures_); }
 
  private:
   void make_tile(std::size_t tile);
   void draw(TileSamples& samples, std::size_t tile, ShaderCache& shaders) const;
   void resolve(const TileSamples& samples, int left, int top, ShaderCache& shaders);
-  void resolve_blended(const TileSamples& samples, std::vector<BlendedSample>& blended, int left, int top,
-                       ShaderCache& shaders);
-  Rgba shade(const TriangleShader& shader, const SurfacePoint& point) const;
-  Rgba shade(const Patch& patch, int x, int y, ShaderCache& shaders) const;
-  void set_pixel(int x, int y, Rgba light, float coverage);
-  /// Passes that show numbers as they are, not light.
-  bool shows_values() const { return options_.pass != Pass::base_color && options_.pass != Pass::lit; }
+  void resolve_blended(const TileSamples& samples, std::span<const BlendedSample> blended, Pass pass,
+                       Picture& picture, int left, int top, ShaderCache& shaders) const;
+  Rgba shade(Pass pass, const TriangleShader& shader, const SurfacePoint& point, LastLook& last) const;
+  SurfacePoint middle(const Patch& patch, const TriangleShader& shader, int x, int y) const;
+  void set_pixel(Picture& picture, Pass pass, int x, int y, Rgba light, float coverage) const;
 
   const RenderScene& scene_;
+  std::span<const Pass> passes_;
   const RenderOptions& options_;
   std::span<const VertexField> fields_;
   SampleGrid grid_;
   Projection projection_;
   TileBins bins_;
   Rgba background_;
-  Picture picture_;
+  std::vector<Picture> pictures_;  // [#passes]
 };
 
 void PictureMaker::make_tile(std::size_t tile) {
@@ -115,9 +121,16 @@ void PictureMaker::make_tile(std::size_t tile) {
   for (const std::uint32_t entry : bins_.blended(tile)) samples->blend(bins_.at(entry), blended);
   if (blended.empty()) {
     resolve(*samples, left, top, shaders);
-  } else {
-    resolve_blended(*samples, blended, left, top, shaders);
+    return;
   }
+  // By sample, far to near; of equally near ones the first of the scene is below.
+  std::sort(blended.begin(), blended.end(), [](const BlendedSample& a, const BlendedSample& b) {
+    if (a.sample != b.sample) return a.sample < b.sample;
+    if (a.nearness != b.nearness) return a.nearness < b.nearness;
+    return a.triangle < b.triangle;
+  });
+  for (std::size_t i = 0; i < passes_.size(); ++i)
+    resolve_blended(*samples, blended, passes_[i], pictures_[i], left, top, shaders);
 }
 
 void PictureMaker::draw(TileSamples& samples, std::size_t tile, ShaderCache& shaders) const {
@@ -133,17 +146,19 @@ void PictureMaker::draw(TileSamples& samples, std::size_t tile, ShaderCache& sha
     }
     samples.draw_where(triangle, [&](double x, double y) {
       const TriangleShader& shader = shaders.get(triangle.triangle);
-      return shader.alpha(shader.at(x, y)) >= material.alpha_cutoff;
+      LastLook last;
+      return shader.base_color(shader.at(x, y), last).a >= material.alpha_cutoff;
     });
   }
 }
 
-Rgba PictureMaker::shade(const TriangleShader& shader, const SurfacePoint& point) const {
-  switch (options_.pass) {
-    case Pass::base_color: return shader.base_color(point);
-    case Pass::lit: return shader.lit(point);
+Rgba PictureMaker::shade(Pass pass, const TriangleShader& shader, const SurfacePoint& point,
+                         LastLook& last) const {
+  switch (pass) {
+    case Pass::base_color: return shader.base_color(point, last);
+    case Pass::lit: return shader.lit(point, last);
     case Pass::normal: {
-      const Vec3f n = shader.normal(point);
+      const Vec3f n = shader.normal(point, last);
       return {0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z, 1};
     }
     case Pass::depth: return grey(shader.depth(point));
@@ -160,16 +175,16 @@ Rgba PictureMaker::shade(const TriangleShader& shader, const SurfacePoint& point
           static_cast<float>(color[2]) / 255, 1};
 }
 
-/// Shades a patch of the pixel (x, y) in its middle.
-Rgba PictureMaker::shade(const Patch& patch, int x, int y, ShaderCache& shaders) const {
-  const TriangleShader& shader = shaders.get(patch.triangle);
+/// The middle of a patch of the pixel (x, y).
+SurfacePoint PictureMaker::middle(const Patch& patch, const TriangleShader& shader, int x, int y) const {
   const double step = 1.0 / grid_.per_pixel, share = step / patch.count;
-  return shade(shader, shader.at(x + patch.sum_x * share + 0.5 * step, y + patch.sum_y * share + 0.5 * step));
+  return shader.at(x + patch.sum_x * share + 0.5 * step, y + patch.sum_y * share + 0.5 * step);
 }
 
 void PictureMaker::resolve(const TileSamples& samples, int left, int top, ShaderCache& shaders) {
   const int n = grid_.per_pixel;
   std::array<Patch, std::size_t{SampleGrid::kMostPerPixel} * SampleGrid::kMostPerPixel> patches;
+  std::vector<Rgba> sums(passes_.size());
   for (int y = 0; y < samples.height() / n; ++y) {
     for (int x = 0; x < samples.width() / n; ++x) {
       std::size_t count = 0;
@@ -185,26 +200,28 @@ void PictureMaker::resolve(const TileSamples& samples, int left, int top, Shader
           patches[k].sum_y += j;
         }
       }
-      Rgba sum{0, 0, 0, 0};
+      std::fill(sums.begin(), sums.end(), Rgba{0, 0, 0, 0});
       int covered = 0;
       for (std::size_t k = 0; k < count; ++k) {
-        sum = sum + shade(patches[k], left + x, top + y, shaders) * static_cast<float>(patches[k].count);
+        const TriangleShader& shader = shaders.get(patches[k].triangle);
+        const SurfacePoint point = middle(patches[k], shader, left + x, top + y);
+        LastLook last;
+        for (std::size_t i = 0; i < passes_.size(); ++i)
+          sums[i] = sums[i] + shade(passes_[i], shader, point, last) * static_cast<float>(patches[k].count);
         covered += patches[k].count;
       }
       const float share = 1.0f / static_cast<float>(n * n);
-      set_pixel(left + x, top + y, sum * share, static_cast<float>(covered) * share);
+      for (std::size_t i = 0; i < passes_.size(); ++i) {
+        set_pixel(pictures_[i], passes_[i], left + x, top + y, sums[i] * share,
+                  static_cast<float>(covered) * share);
+      }
     }
   }
 }
 
-void PictureMaker::resolve_blended(const TileSamples& samples, std::vector<BlendedSample>& blended, int left,
-                                   int top, ShaderCache& shaders) {
-  // By sample, far to near; of equally near ones the first of the scene is below.
-  std::sort(blended.begin(), blended.end(), [](const BlendedSample& a, const BlendedSample& b) {
-    if (a.sample != b.sample) return a.sample < b.sample;
-    if (a.nearness != b.nearness) return a.nearness < b.nearness;
-    return a.triangle < b.triangle;
-  });
+void PictureMaker::resolve_blended(const TileSamples& samples, std::span<const BlendedSample> blended,
+                                   Pass pass, Picture& picture, int left, int top,
+                                   ShaderCache& shaders) const {
   const int n = grid_.per_pixel;
   struct Shaded {
     std::uint32_t triangle;
@@ -223,7 +240,8 @@ void PictureMaker::resolve_blended(const TileSamples& samples, std::vector<Blend
           if (shaded.triangle == triangle) return shaded.light;
         }
         const TriangleShader& shader = shaders.get(triangle);
-        known.push_back({triangle, shade(shader, shader.at(left + x + 0.5, top + y + 0.5))});
+        LastLook last;
+        known.push_back({triangle, shade(pass, shader, shader.at(left + x + 0.5, top + y + 0.5), last)});
         return known.back().light;
       };
       Rgba sum{0, 0, 0, 0};
@@ -247,27 +265,27 @@ void PictureMaker::resolve_blended(const TileSamples& samples, std::vector<Blend
         }
       }
       const float share = 1.0f / static_cast<float>(n * n);
-      set_pixel(left + x, top + y, sum * share, coverage * share);
+      set_pixel(picture, pass, left + x, top + y, sum * share, coverage * share);
     }
   }
 }
 
 /// `light` is already weighted with coverage.
-void PictureMaker::set_pixel(int x, int y, Rgba light, float coverage) {
-  std::uint8_t* const out = picture_.color.at(x, y);
+void PictureMaker::set_pixel(Picture& picture, Pass pass, int x, int y, Rgba light, float coverage) const {
+  std::uint8_t* const out = picture.color.at(x, y);
   const float values[3] = {light.r, light.g, light.b};
   const float behind[3] = {background_.r, background_.g, background_.b};
   for (std::size_t k = 0; k < 3; ++k) {
     if (coverage <= 0) {
       out[k] = options_.background[k];
-    } else if (shows_values()) {
+    } else if (!shows_light(pass)) {
       const float value = 255 * values[k] + static_cast<float>(options_.background[k]) * (1 - coverage);
       out[k] = static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
     } else {
       out[k] = to_display(values[k] + behind[k] * (1 - coverage));
     }
   }
-  *picture_.coverage.at(x, y) = static_cast<std::uint8_t>(std::clamp(coverage, 0.0f, 1.0f) * 255 + 0.5f);
+  *picture.coverage.at(x, y) = static_cast<std::uint8_t>(std::clamp(coverage, 0.0f, 1.0f) * 255 + 0.5f);
 }
 
 void check(const RenderScene& scene, const RenderOptions& options, std::span<const VertexField> fields) {
@@ -298,8 +316,14 @@ OptionList describe(RenderOptions& o) {
 
 Picture render(const RenderScene& scene, const View& view, const RenderOptions& options,
                const Context& context, std::span<const VertexField> fields) {
+  return std::move(render_passes(scene, view, {&options.pass, 1}, options, context, fields).front());
+}
+
+std::vector<Picture> render_passes(const RenderScene& scene, const View& view, std::span<const Pass> passes,
+                                   const RenderOptions& options, const Context& context,
+                                   std::span<const VertexField> fields) {
   check(scene, options, fields);
-  return PictureMaker(scene, view, options, context, fields).take();
+  return PictureMaker(scene, view, passes, options, context, fields).take();
 }
 
 std::vector<Picture> render_views(const RenderScene& scene, std::span<const View> views,

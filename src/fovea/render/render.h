@@ -52,6 +52,12 @@ struct Picture {
 Picture render(const RenderScene& scene, const View& view, const RenderOptions& options,
                const Context& context, std::span<const VertexField> fields = {});
 
+/// The same in several passes, for which what is visible is found once: one picture for each of `passes`,
+/// whatever `options` say.
+std::vector<Picture> render_passes(const RenderScene& scene, const View& view, std::span<const Pass> passes,
+                                   const RenderOptions& options, const Context& context,
+                                   std::span<const VertexField> fields = {});
+
 /// One picture per view, views in parallel.
 std::vector<Picture> render_views(const RenderScene& scene, std::span<const View> views,
                                   const RenderOptions& options, const Context& context,

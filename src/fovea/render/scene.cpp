@@ -196,6 +196,15 @@ std::vector<View> camera_views(const Model& model, const Pose& pose) {
   return views;
 }
 
+std::vector<View> views_of(const ViewOptions& options, const Model& model, const Pose& pose,
+                           const RenderScene& scene) {
+  if (options.set != ViewSet::cameras) return make_views(options, scene.sphere);
+  std::vector<View> views = camera_views(model, pose);
+  if (views.empty())
+    throw Error(ErrorKind::usage, "the model has no cameras", {}, "choose another set with --views");
+  return views;
+}
+
 TriangleOrigin origin(const RenderScene& scene, std::uint32_t triangle) {
   const auto after =
       std::upper_bound(scene.meshes.begin(), scene.meshes.end(), triangle,

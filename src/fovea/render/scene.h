@@ -70,6 +70,11 @@ RenderScene make_render_scene(const Model& model, const Pose& pose, Context& con
 /// What the model's own cameras see, node by node; their aspect ratio gives way to the picture's.
 std::vector<View> camera_views(const Model& model, const Pose& pose);
 
+/// The views of a set onto a model in a pose; around its scene's sphere, unless they are its own cameras.
+/// Throws Error(usage) if these are asked for and there are none.
+std::vector<View> views_of(const ViewOptions& options, const Model& model, const Pose& pose,
+                           const RenderScene& scene);
+
 /// Where a triangle of the scene comes from.
 struct TriangleOrigin {
   std::uint32_t mesh = 0;  ///< Index into RenderScene::meshes.

@@ -58,6 +58,7 @@ TriangleShader::TriangleShader(const RenderScene& scene, const Projection& proje
   const Vec3d p0(positions_[0]);
   face_normal_ = Vec3f(normalized(cross(Vec3d(positions_[1]) - p0, Vec3d(positions_[2]) - p0)) *
                        (mesh_->surface.mirrored ? -1.0 : 1.0));
+  uv_0_ = uv_of_set(0);
 }
 
 SurfacePoint TriangleShader::at(double x, double y) const {
@@ -75,7 +76,7 @@ SurfacePoint TriangleShader::at(double x, double y) const {
   return point;
 }
 
-std::array<const float*, 3> TriangleShader::uv(int set) const {
+std::array<const float*, 3> TriangleShader::uv_of_set(int set) const {
   const auto& layers = mesh_->uv;
   return corner_values(
       static_cast<std::size_t>(set) < layers.size() ? layers[static_cast<std::size_t>(set)] : nullptr, face_);
@@ -95,11 +96,6 @@ Rgba TriangleShader::look_up(const SceneTexture& texture, const SurfacePoint& po
   return map.sample(last.footprint);
 }
 
-Rgba TriangleShader::base_color(const SurfacePoint& point) const {
-  LastLook last;
-  return base_color(point, last);
-}
-
 Rgba TriangleShader::base_color(const SurfacePoint& point, LastLook& last) const {
   Rgba color = material_->base_color;
   if (material_->base_color_texture) color = color * look_up(*material_->base_color_texture, point, last);
@@ -117,8 +113,6 @@ Rgba TriangleShader::base_color(const SurfacePoint& point, LastLook& last) const
   color.a = std::clamp(color.a, 0.0f, 1.0f);
   return color;
 }
-
-float TriangleShader::alpha(const SurfacePoint& point) const { return base_color(point).a; }
 
 Vec3f TriangleShader::to_eye(const SurfacePoint& point) const {
   if (!projection_.view().perspective) return Vec3f(projection_.view().back);
@@ -179,15 +173,13 @@ Vec3f TriangleShader::geometric_normal(const SurfacePoint& point) const {
   return l > 1e-6f ? smooth / l : face_normal_;
 }
 
-Vec3f TriangleShader::normal(const SurfacePoint& point) const {
-  LastLook last;
+Vec3f TriangleShader::normal(const SurfacePoint& point, LastLook& last) const {
   Vec3f n = geometric_normal(point);
   if (material_->normal_texture) n = map_normal(n, point, last);
   return toward(n, to_eye(point));
 }
 
-Rgba TriangleShader::lit(const SurfacePoint& point) const {
-  LastLook last;
+Rgba TriangleShader::lit(const SurfacePoint& point, LastLook& last) const {
   const Rgba color = base_color(point, last);
   if (material_->unlit) return color;
   SurfaceLook look;

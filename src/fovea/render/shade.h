@@ -16,6 +16,12 @@ struct SurfacePoint {
   std::array<float, 3> weight, dx, dy;
 };
 
+/// The footprint that was used last at a point: a material's maps mostly share one.
+struct LastLook {
+  int look = -1;
+  Footprint footprint;
+};
+
 /// A triangle of the scene, ready to be looked at in its points. The triangle may reach behind the eye.
 class TriangleShader {
  public:
@@ -29,28 +35,23 @@ class TriangleShader {
   const SceneMesh& mesh() const { return *mesh_; }
   FaceId face() const { return face_; }
 
-  /// Base colour as light, with alpha: factor × texture × vertex colour.
-  Rgba base_color(const SurfacePoint& point) const;
-  /// Alpha alone.
-  float alpha(const SurfacePoint& point) const;
+  /// Base colour as light, with alpha: factor × texture × vertex colour. Calls for the same point share
+  /// `last`.
+  Rgba base_color(const SurfacePoint& point, LastLook& last) const;
   /// Unit vector, bent by the normal map; seen from behind, it turns with the face to the eye.
-  Vec3f normal(const SurfacePoint& point) const;
+  Vec3f normal(const SurfacePoint& point, LastLook& last) const;
   /// Light to the eye under the rig (light_rig.h); the base colour if the material is unlit.
-  Rgba lit(const SurfacePoint& point) const;
+  Rgba lit(const SurfacePoint& point, LastLook& last) const;
   /// 1 at the near end of the scene's sphere, 0 at the far end.
   float depth(const SurfacePoint& point) const;
   /// A number per vertex of the mesh.
   float field(const SurfacePoint& point, std::span<const float> per_vertex) const;
 
  private:
-  /// The footprint that was used last; a material's maps mostly share one.
-  struct LastLook {
-    int look = -1;
-    Footprint footprint;
-  };
   Rgba look_up(const SceneTexture& texture, const SurfacePoint& point, LastLook& last) const;
-  std::array<const float*, 3> uv(int set) const;
-  Rgba base_color(const SurfacePoint& point, LastLook& last) const;
+  /// Texture coordinates of the corners; null if the face has none in the set.
+  std::array<const float*, 3> uv(int set) const { return set == 0 ? uv_0_ : uv_of_set(set); }
+  std::array<const float*, 3> uv_of_set(int set) const;
   Vec3f geometric_normal(const SurfacePoint& point) const;
   Vec3f to_eye(const SurfacePoint& point) const;
   Vec3f map_normal(Vec3f normal, const SurfacePoint& point, LastLook& last) const;
@@ -67,7 +68,8 @@ class TriangleShader {
   std::array<Vec3d, 3> edges_;  // corner weights before division, linear on the plane of the view
   Vec3d sum_;
   std::array<Vec3f, 3> positions_;
-  Vec3f face_normal_;  // geometric, outward
+  Vec3f face_normal_;                 // geometric, outward
+  std::array<const float*, 3> uv_0_;  // of set 0, which most maps use
 };
 
 }  // namespace fovea

@@ -221,6 +221,19 @@ Pose rest_pose(const Model& model) {
   return pose;
 }
 
+OptionList describe(PoseOptions& o) {
+  return {{"animation", "Pose the model by this animation, counted from 0.", &o.animation, "", 0, 1e6},
+          {"time", "Moment of the animation.", &o.time_s, "seconds", 0, 1e9}};
+}
+
+Pose pose_of(const Model& model, const PoseOptions& options) {
+  if (options.animation)
+    return pose_at(model, static_cast<std::size_t>(*options.animation), options.time_s.value_or(0));
+  if (options.time_s)
+    throw Error(ErrorKind::usage, "--time needs --animation", {}, "for example --animation 0");
+  return rest_pose(model);
+}
+
 Pose pose_at(const Model& model, std::size_t animation, double time_s) {
   if (animation >= model.animations.size()) {
     throw Error(ErrorKind::usage, "the model has no animation " + std::to_string(animation), {},

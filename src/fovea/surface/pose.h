@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "fovea/base/options.h"
 #include "fovea/model/model.h"
 
 namespace fovea {
@@ -19,6 +22,16 @@ Pose rest_pose(const Model& model);
 /// it does not move rest. What it does to anything but nodes is left out.
 /// Throws Error(usage) if there is no such animation.
 Pose pose_at(const Model& model, std::size_t animation, double time_s);
+
+/// Which pose of a model is meant: at rest, or at a time of an animation.
+struct PoseOptions {
+  std::optional<std::int64_t> animation;  ///< Counted from 0; none: at rest.
+  std::optional<double> time_s;           ///< 0 without one.
+};
+OptionList describe(PoseOptions& options);
+
+/// Throws Error(usage) for a time without an animation, and as `pose_at`.
+Pose pose_of(const Model& model, const PoseOptions& options);
 
 /// Time of an animation's last key, in seconds.
 double duration_s(const Animation& animation);

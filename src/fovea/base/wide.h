@@ -1,0 +1,12 @@
+#pragma once
+
+/// Before the definition of a function whose loops the compiler can turn into vector instructions: it is
+/// compiled twice, for machines with AVX2 and for any, and the machine chooses. The same bits either way, as
+/// products are not contracted into fused multiply-adds (fovea_floating_point in cmake/FoveaTargets.cmake).
+/// Elsewhere, and under sanitizers (they cannot run when the choice is made), it does nothing.
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FOVEA_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define FOVEA_WIDE
+#endif
