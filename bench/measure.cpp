@@ -58,7 +58,7 @@ Cost work_here(const Preparation& prepare) {
   const double cpu_before = own_cpu_seconds();
   const Clock::time_point start = Clock::now();
   Cost cost;
-  cost.triangles = work();
+  cost.result = work();
   cost.wall_seconds = seconds_since(start);
   cost.cpu_seconds = own_cpu_seconds() - cpu_before;
   const std::uint64_t peak = status_bytes("VmHWM");

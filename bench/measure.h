@@ -12,11 +12,11 @@ struct Cost {
   double wall_seconds = 0;
   double cpu_seconds = 0;        ///< User and system time over all threads.
   std::uint64_t peak_bytes = 0;  ///< Resident memory at its highest, beyond what was there before.
-  std::uint64_t triangles = 0;   ///< What the work returned.
+  std::uint64_t result = 0;      ///< What the work returned.
 };
 
 /// Work in two steps: the outer call prepares (not measured) and returns what is measured. That
-/// returns the triangles of its result.
+/// returns a number that says what came out.
 using Work = std::function<std::uint64_t()>;
 using Preparation = std::function<Work()>;
 

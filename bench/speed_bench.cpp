@@ -52,7 +52,7 @@ std::uint64_t count_triangles(const Case& row) {
                return [model] { return triangle_count(*model); };
              },
              1)
-      .triangles;
+      .result;
 }
 
 Cost measure_fovea(const Case& row, int threads) {
@@ -112,7 +112,7 @@ void print_row(const Case& row) {
   const Cost cgal = measure_cgal(row);
   fmt::print("| {} | {:.0f} | {} | {:.0f} % | {} / {} / {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
              row.subject.name, triangles, row.attributes ? "attributes" : "positions", 100 * row.ratio,
-             one.triangles, meshopt.triangles, cgal.wall_seconds > 0 ? std::to_string(cgal.triangles) : "–",
+             one.result, meshopt.result, cgal.wall_seconds > 0 ? std::to_string(cgal.result) : "–",
              rate(triangles, one.cpu_seconds), rate(triangles, two.wall_seconds),
              rate(triangles, meshopt.cpu_seconds), rate(triangles, cgal.cpu_seconds),
              ratio(one.cpu_seconds, meshopt.cpu_seconds), ratio(one.cpu_seconds, cgal.cpu_seconds),

@@ -123,6 +123,17 @@ Subject sample_subject(const std::string& name) {
           }};
 }
 
+/// Files of the data folder, or Fovea's own samples without one.
+std::vector<Subject> subjects(std::initializer_list<const char*> files) {
+  std::vector<Subject> all;
+  if (const auto folder = data_folder()) {
+    for (const char* file : files) all.push_back(file_subject(*folder / file));
+  } else {
+    for (const SampleInfo& info : samples()) all.push_back(sample_subject(info.name));
+  }
+  return all;
+}
+
 }  // namespace
 
 std::optional<std::filesystem::path> data_folder() {
@@ -132,16 +143,13 @@ std::optional<std::filesystem::path> data_folder() {
 }
 
 std::vector<Subject> speed_subjects() {
-  std::vector<Subject> subjects;
-  if (const auto folder = data_folder()) {
-    for (const char* file : {"scans/bunny.ply", "scans/armadillo.ply", "scans/dragon.ply",
-                             "textured/DamagedHelmet.glb", "textured/ToyCar.glb"}) {
-      subjects.push_back(file_subject(*folder / file));
-    }
-  } else {
-    for (const SampleInfo& info : samples()) subjects.push_back(sample_subject(info.name));
-  }
-  return subjects;
+  return subjects({"scans/bunny.ply", "scans/armadillo.ply", "scans/dragon.ply", "textured/DamagedHelmet.glb",
+                   "textured/ToyCar.glb"});
+}
+
+std::vector<Subject> render_subjects() {
+  return subjects({"textured/DamagedHelmet.glb", "textured/AcousticGuitar.glb", "textured/ToyCar.glb",
+                   "scans/dragon.ply"});
 }
 
 Subject noise_sphere(std::size_t triangles) {

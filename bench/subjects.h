@@ -23,6 +23,9 @@ std::optional<std::filesystem::path> data_folder();
 /// Scans and textured models of the data folder, or Fovea's own samples without one.
 std::vector<Subject> speed_subjects();
 
+/// What is drawn: textured models and a scan of the data folder, or Fovea's own samples.
+std::vector<Subject> render_subjects();
+
 /// A closed, bumpy sphere of about `triangles` triangles (position only) for runs of any size.
 Subject noise_sphere(std::size_t triangles);
 

@@ -64,6 +64,8 @@ struct Patch {
   int sum_x = 0, sum_y = 0;  // of sample numbers within the pixel
 };
 
+using Patches = std::array<Patch, std::size_t{SampleGrid::kMostPerPixel} * SampleGrid::kMostPerPixel>;
+
 class PictureMaker {
  public:
   PictureMaker(const RenderScene& scene, const View& view, std::span<const Pass> passes,
@@ -78,10 +80,13 @@ class PictureMaker {
         bins_(scene, projection_, grid_, context),
         background_{to_light(options.background[0]), to_light(options.background[1]),
                     to_light(options.background[2]), 0} {
-    for ([[maybe_unused]] const Pass pass : passes) {
-      pictures_.push_back({Image8(grid_.width, grid_.height, 3, ColorEncoding::srgb),
-                           Image8(grid_.width, grid_.height, 1, ColorEncoding::linear)});
-    }
+    Picture empty{Image8(grid_.width, grid_.height, 3, ColorEncoding::srgb),
+                  Image8(grid_.width, grid_.height, 1, ColorEncoding::linear)};
+    for (int x = 0; x < grid_.width; ++x)
+      std::copy(options.background.begin(), options.background.end(), empty.color.at(x, 0));
+    for (int y = 1; y < grid_.height; ++y)
+      std::copy_n(empty.color.at(0, 0), 3 * grid_.width, empty.color.at(0, y));
+    pictures_.assign(passes.size(), empty);
     const auto tiles = static_cast<std::size_t>(grid_.columns()) * static_cast<std::size_t>(grid_.rows());
     parallel_for(context, tiles, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t tile = begin; tile < end; ++tile) make_tile(tile);
@@ -93,6 +98,7 @@ class PictureMaker {
  private:
   void make_tile(std::size_t tile);
   void draw(TileSamples& samples, std::size_t tile, ShaderCache& shaders) const;
+  std::size_t find_patches(const TileSamples& samples, int x, int y, Patches& patches) const;
   void resolve(const TileSamples& samples, int left, int top, ShaderCache& shaders);
   void resolve_blended(const TileSamples& samples, std::span<const BlendedSample> blended, Pass pass,
                        Picture& picture, int left, int top, ShaderCache& shaders) const;
@@ -114,6 +120,7 @@ class PictureMaker {
 void PictureMaker::make_tile(std::size_t tile) {
   const int column = static_cast<int>(tile) % grid_.columns(), row = static_cast<int>(tile) / grid_.columns();
   const int left = column * grid_.tile_pixels(), top = row * grid_.tile_pixels();
+  if (bins_.opaque(tile).empty() && bins_.blended(tile).empty()) return;
   const auto samples = std::make_unique<TileSamples>(grid_, column, row);
   ShaderCache shaders(scene_, projection_, static_cast<int>(options_.anisotropy));
   draw(*samples, tile, shaders);
@@ -136,10 +143,9 @@ void PictureMaker::make_tile(std::size_t tile) {
 void PictureMaker::draw(TileSamples& samples, std::size_t tile, ShaderCache& shaders) const {
   for (const std::uint32_t entry : bins_.opaque(tile)) {
     const ScreenTriangle triangle = bins_.at(entry);
-    const TriangleOrigin from = origin(scene_, triangle.triangle);
-    const SceneMesh& mesh = scene_.meshes[from.mesh];
-    const SceneMaterial& material =
-        scene_.materials[mesh.part_material[mesh.mesh->face_part[from.face.index()]]];
+    const SceneMesh& mesh = scene_.meshes[triangle.mesh];
+    const std::uint32_t face = triangle.triangle - mesh.first_triangle;
+    const SceneMaterial& material = scene_.materials[mesh.part_material[mesh.mesh->face_part[face]]];
     if (material.alpha_mode != AlphaMode::mask) {
       samples.draw(triangle);
       continue;
@@ -181,25 +187,43 @@ SurfacePoint PictureMaker::middle(const Patch& patch, const TriangleShader& shad
   return shader.at(x + patch.sum_x * share + 0.5 * step, y + patch.sum_y * share + 0.5 * step);
 }
 
+/// The surfaces in pixel (x, y) of a tile.
+std::size_t PictureMaker::find_patches(const TileSamples& samples, int x, int y, Patches& patches) const {
+  const int n = grid_.per_pixel;
+  const std::uint32_t first = samples.triangle(x * n, y * n);
+  bool even = true;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) even &= samples.triangle(x * n + i, y * n + j) == first;
+  }
+  if (even) {
+    const int sum = n * n * (n - 1) / 2;
+    patches[0] = {first, n * n, sum, sum};
+    return first == kInvalid ? 0 : 1;
+  }
+  std::size_t count = 0;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const std::uint32_t triangle = samples.triangle(x * n + i, y * n + j);
+      if (triangle == kInvalid) continue;
+      std::size_t k = 0;
+      while (k < count && patches[k].triangle != triangle) ++k;
+      if (k == count) patches[count++] = {triangle, 0, 0, 0};
+      ++patches[k].count;
+      patches[k].sum_x += i;
+      patches[k].sum_y += j;
+    }
+  }
+  return count;
+}
+
 void PictureMaker::resolve(const TileSamples& samples, int left, int top, ShaderCache& shaders) {
   const int n = grid_.per_pixel;
-  std::array<Patch, std::size_t{SampleGrid::kMostPerPixel} * SampleGrid::kMostPerPixel> patches;
+  Patches patches;
   std::vector<Rgba> sums(passes_.size());
   for (int y = 0; y < samples.height() / n; ++y) {
     for (int x = 0; x < samples.width() / n; ++x) {
-      std::size_t count = 0;
-      for (int j = 0; j < n; ++j) {
-        for (int i = 0; i < n; ++i) {
-          const std::uint32_t triangle = samples.triangle(x * n + i, y * n + j);
-          if (triangle == kInvalid) continue;
-          std::size_t k = 0;
-          while (k < count && patches[k].triangle != triangle) ++k;
-          if (k == count) patches[count++] = {triangle, 0, 0, 0};
-          ++patches[k].count;
-          patches[k].sum_x += i;
-          patches[k].sum_y += j;
-        }
-      }
+      const std::size_t count = find_patches(samples, x, y, patches);
+      if (count == 0) continue;
       std::fill(sums.begin(), sums.end(), Rgba{0, 0, 0, 0});
       int covered = 0;
       for (std::size_t k = 0; k < count; ++k) {
@@ -265,7 +289,7 @@ void PictureMaker::resolve_blended(const TileSamples& samples, std::span<const B
         }
       }
       const float share = 1.0f / static_cast<float>(n * n);
-      set_pixel(picture, pass, left + x, top + y, sum * share, coverage * share);
+      if (coverage > 0) set_pixel(picture, pass, left + x, top + y, sum * share, coverage * share);
     }
   }
 }
@@ -276,9 +300,7 @@ void PictureMaker::set_pixel(Picture& picture, Pass pass, int x, int y, Rgba lig
   const float values[3] = {light.r, light.g, light.b};
   const float behind[3] = {background_.r, background_.g, background_.b};
   for (std::size_t k = 0; k < 3; ++k) {
-    if (coverage <= 0) {
-      out[k] = options_.background[k];
-    } else if (!shows_light(pass)) {
+    if (!shows_light(pass)) {
       const float value = 255 * values[k] + static_cast<float>(options_.background[k]) * (1 - coverage);
       out[k] = static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
     } else {

@@ -184,7 +184,7 @@ void TileBins::sort(const Projection& projection, const SampleGrid& grid, std::s
       const std::array<ScreenVertex, 3> piece{fan[0], fan[k - 1], fan[k]};
       const auto entry = static_cast<std::uint32_t>(scene_.triangle_count + chunk.clipped.size());
       if (is_seen(piece) && put(piece, entry, blended))
-        chunk.clipped.push_back({piece, static_cast<std::uint32_t>(t)});
+        chunk.clipped.push_back({piece, static_cast<std::uint32_t>(t), m});
     }
   }
 }
@@ -209,7 +209,7 @@ ScreenTriangle TileBins::at(std::uint32_t entry) const {
   const TriangleOrigin from = origin(scene_, entry);
   const auto& t = scene_.meshes[from.mesh].mesh->triangles[from.face.index()];
   const std::vector<ScreenVertex>& vertices = vertices_[from.mesh];
-  return {{vertices[t[0].index()], vertices[t[1].index()], vertices[t[2].index()]}, entry};
+  return {{vertices[t[0].index()], vertices[t[1].index()], vertices[t[2].index()]}, entry, from.mesh};
 }
 
 }  // namespace fovea

@@ -62,6 +62,7 @@ class Projection {
 struct ScreenTriangle {
   std::array<ScreenVertex, 3> v;
   std::uint32_t triangle = 0;  ///< In the scene.
+  std::uint32_t mesh = 0;      ///< That it belongs to, in the scene.
 };
 
 /// All triangles that may cover a sample, sorted into tiles.
