@@ -53,7 +53,8 @@ void make_context(int threads) {
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
   setenv("GALLIUM_DRIVER", "llvmpipe", 1);
   setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
-  const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  const EGLDisplay display =
+      eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE)
     give_up("no display without a window");
   eglBindAPI(EGL_OPENGL_ES_API);
@@ -159,9 +160,8 @@ class GlScene {
     for (const SceneMesh& mesh : scene.meshes) {
       for (std::uint32_t part = 0; part < mesh.part_material.size(); ++part) add(mesh, part);
     }
-    std::stable_partition(batches_.begin(), batches_.end(), [](const Batch& batch) {
-      return batch.material->alpha_mode != AlphaMode::blend;
-    });
+    std::stable_partition(batches_.begin(), batches_.end(),
+                          [](const Batch& batch) { return batch.material->alpha_mode != AlphaMode::blend; });
     glEnable(GL_DEPTH_TEST);
     glViewport(0, 0, size, size);
   }
@@ -225,8 +225,8 @@ class GlScene {
     GLuint buffers[2];
     glGenBuffers(2, buffers);
     glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(GlVertex)), vertices.data(),
-                 GL_STATIC_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(GlVertex)),
+                 vertices.data(), GL_STATIC_DRAW);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof indices[0]),
                  indices.data(), GL_STATIC_DRAW);
@@ -274,7 +274,7 @@ class GlScene {
     const Vec3d x = view.right * scale, y = view.up * scale, z = view.back * -1.0;
     const double ox = -dot(x, view.eye), oy = -dot(y, view.eye), oz = -dot(z, view.eye);
     const auto f = [](double v) { return static_cast<float>(v); };
-    return {f(x.x), f(y.x), f(depth * z.x), f(z.x), f(x.y), f(y.y), f(depth * z.y), f(z.y),
+    return {f(x.x), f(y.x), f(depth * z.x), f(z.x), f(x.y), f(y.y), f(depth * z.y),        f(z.y),
             f(x.z), f(y.z), f(depth * z.z), f(z.z), f(ox),  f(oy),  f(depth * oz + shift), f(oz)};
   }
 

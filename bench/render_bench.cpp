@@ -150,7 +150,8 @@ int run(int count, char** words) {
       }
     }
     fmt::print(
-        "Seconds for 24 views of 512 × 512 pixels with four samples each, two threads, everything loaded; best "
+        "Seconds for 24 views of 512 × 512 pixels with four samples each, two threads, everything loaded; "
+        "best "
         "of {}. Above 1× fovea is faster.\n\n"
         "| model | triangles | fovea: set-up | ids | base colour | lit | base, 1 thread | llvmpipe: base "
         "colour | embree: ids | fovea : llvmpipe | fovea : embree | like llvmpipe's | samples : embree's |\n"

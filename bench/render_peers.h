@@ -20,13 +20,13 @@ struct ViewJob {
   int threads = 1;
 };
 
-/// Draws base colours with OpenGL ES on Mesa's llvmpipe, without a window: trilinear textures, alpha masks, four
-/// samples per pixel, pictures read back. Blended surfaces are drawn last, in the order of the scene. Throws
-/// Error(internal) without such a driver.
+/// Draws base colours with OpenGL ES on Mesa's llvmpipe, without a window: trilinear textures, alpha masks,
+/// four samples per pixel, pictures read back. Blended surfaces are drawn last, in the order of the scene.
+/// Throws Error(internal) without such a driver.
 std::function<std::vector<Image8>()> llvmpipe_peer(const ViewJob& job);
 
-/// Finds the nearest triangle for a ray through each sample with Embree, in coherent packets of eight; returns
-/// how many rays hit. Nothing is shaded.
+/// Finds the nearest triangle for a ray through each sample with Embree, in coherent packets of eight;
+/// returns how many rays hit. Nothing is shaded.
 std::function<std::uint64_t()> embree_peer(const ViewJob& job);
 
 }  // namespace fovea::bench
