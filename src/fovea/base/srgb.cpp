@@ -9,17 +9,17 @@ namespace fovea {
 
 namespace {
 
-/// The n-th root of a positive number: Newton's steps from an estimate within a few percent, which double the
+/// A root of some order of a positive number: Newton's steps from an estimate within a few percent, which double the
 /// digits that are right.
-template <int n>
+template <int Order>
 double root(double x) {
   // As an integer a double is about a logarithm: divided by n it is that of the root.
   constexpr std::int64_t kOne = std::bit_cast<std::int64_t>(1.0);
-  double y = std::bit_cast<double>(kOne + (std::bit_cast<std::int64_t>(x) - kOne) / n);
+  double y = std::bit_cast<double>(kOne + (std::bit_cast<std::int64_t>(x) - kOne) / Order);
   for (int i = 0; i < 5; ++i) {
     double power = y;
-    for (int k = 2; k < n; ++k) power *= y;
-    y -= (y - x / power) / n;
+    for (int k = 2; k < Order; ++k) power *= y;
+    y -= (y - x / power) / Order;
   }
   return y;
 }
