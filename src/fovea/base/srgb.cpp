@@ -9,11 +9,11 @@ namespace fovea {
 
 namespace {
 
-/// A root of some order of a positive number: Newton's steps from an estimate within a few percent, which double the
-/// digits that are right.
+/// The root of a positive number: Newton's steps from an estimate within a few percent, which double the digits
+/// that are right.
 template <int Order>
 double root(double x) {
-  // As an integer a double is about a logarithm: divided by n it is that of the root.
+  // As an integer a double is about a logarithm: divided by the order it is that of the root.
   constexpr std::int64_t kOne = std::bit_cast<std::int64_t>(1.0);
   double y = std::bit_cast<double>(kOne + (std::bit_cast<std::int64_t>(x) - kOne) / Order);
   for (int i = 0; i < 5; ++i) {
