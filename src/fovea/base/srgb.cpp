@@ -9,8 +9,8 @@ namespace fovea {
 
 namespace {
 
-/// The root of a positive number: Newton's steps from an estimate within a few percent, which double the digits
-/// that are right.
+/// The root of a positive number: Newton's steps from an estimate within a few percent, which double the
+/// digits that are right.
 template <int Order>
 double root(double x) {
   // As an integer a double is about a logarithm: divided by the order it is that of the root.
