@@ -10,15 +10,15 @@
 namespace fovea {
 namespace {
 
-TriangleSoup soup_of(const TriMesh& mesh, Vec3f shift = {}, float scale = 1) {
-  TriangleSoup soup;
+Surface soup_of(const TriMesh& mesh, Vec3f shift = {}, float scale = 1) {
+  Surface soup;
   for (const Vec3f& p : mesh.positions) soup.positions.push_back(p * scale + shift);
   for (const auto& t : mesh.triangles) soup.triangles.push_back({t[0].value, t[1].value, t[2].value});
   return soup;
 }
 
 TEST(SurfaceDistance, OfASurfaceToItselfIsZero) {
-  const TriangleSoup sphere = soup_of(test::icosphere(3));
+  const Surface sphere = soup_of(test::icosphere(3));
   const SurfaceDistance d = surface_distance(sphere, sphere, 2000, {});
   EXPECT_LT(d.hausdorff(), 1e-6);  // samples are rounded to floats when they are asked for
   EXPECT_LT(d.mean(), 1e-7);
@@ -36,7 +36,7 @@ TEST(SurfaceDistance, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
 TEST(SurfaceDistance, KnowsWhatWasLostFromWhatWasAdded) {
   // A square of which half is gone: from the whole to the half up to 0.5 away, the other way nothing.
   const TriMesh whole = test::grid(8, 8);
-  TriangleSoup half = soup_of(whole);
+  Surface half = soup_of(whole);
   std::erase_if(half.triangles, [&](const auto& t) {
     return half.positions[t[0]].x + half.positions[t[1]].x + half.positions[t[2]].x > 1.5f;
   });
@@ -50,7 +50,7 @@ TEST(SurfaceDistance, KnowsWhatWasLostFromWhatWasAdded) {
 
 TEST(SurfaceDistance, VerticesCountForTheMaximum) {
   // A spike too thin for any sample.
-  TriangleSoup spiked = soup_of(test::grid(2, 2));
+  Surface spiked = soup_of(test::grid(2, 2));
   spiked.positions.insert(spiked.positions.end(),
                           {{0.5f, 0.5f, 0}, {0.5f, 0.5f, 1}, {0.5f, 0.5f + 1e-7f, 0}});
   const auto last = static_cast<std::uint32_t>(spiked.positions.size() - 1);
@@ -61,7 +61,7 @@ TEST(SurfaceDistance, VerticesCountForTheMaximum) {
 }
 
 TEST(SurfaceDistance, TheSameForAnyThreadsAndSeededOtherwise) {
-  const TriangleSoup a = soup_of(test::torus(20, 10)), b = soup_of(test::torus(14, 7));
+  const Surface a = soup_of(test::torus(20, 10)), b = soup_of(test::torus(14, 7));
   Context one, two, other;
   one.threads = 1;
   two.threads = 2;
@@ -89,7 +89,7 @@ TEST(SurfaceDistance, SamplesAreSpreadByArea) {
 }
 
 TEST(SurfaceDistance, EmptySurfacesAreInfinitelyFar) {
-  const TriangleSoup some = soup_of(test::tetrahedron()), none;
+  const Surface some = soup_of(test::tetrahedron()), none;
   EXPECT_EQ(surface_distance(some, none, 10, {}).hausdorff(), INFINITY);
   EXPECT_EQ(surface_distance(none, none, 10, {}).hausdorff(), 0);
 }

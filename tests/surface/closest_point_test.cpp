@@ -44,7 +44,7 @@ TEST(ClosestPoint, WorksOnTrianglesWithoutArea) {
 
 TEST(ClosestPoint, FindsWhatLookingAtEveryTriangleFinds) {
   Random random(4);
-  TriangleSoup soup;
+  Surface soup;
   for (std::uint32_t t = 0; t < 400; ++t) {
     const Vec3d corner = random_point(random);
     for (int k = 0; k < 3; ++k) soup.positions.emplace_back(corner + random_point(random) * 0.1);
@@ -66,14 +66,14 @@ TEST(ClosestPoint, FindsWhatLookingAtEveryTriangleFinds) {
 }
 
 TEST(ClosestPoint, OfEquallyNearTheLowestNumber) {
-  TriangleSoup soup;
+  Surface soup;
   soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   soup.triangles.assign(9, {0, 1, 2});
   EXPECT_EQ(ClosestPoint(soup).nearest({0.2, 0.2, 3}).triangle, 0u);
 }
 
 TEST(ClosestPoint, NothingIsInfinitelyFar) {
-  const TriangleSoup empty;
+  const Surface empty;
   EXPECT_EQ(ClosestPoint(empty).nearest({}).distance, std::numeric_limits<double>::infinity());
 }
 

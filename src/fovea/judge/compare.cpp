@@ -64,12 +64,6 @@ void summarize(Comparison& c) {
   for (const ViewComparison& view : c.views) c.silhouette_iou += view.silhouette_iou / count;
 }
 
-double diagonal_of(const TriangleSoup& soup) {
-  Box box;
-  for (const Vec3f& p : soup.positions) box.add(Vec3d(p));
-  return box.diagonal();
-}
-
 /// How far the vertices of each mesh are from a surface, of `unit`; of a mesh that is shown several times, in
 /// its first place.
 std::vector<VertexField> distance_fields(const RenderScene& scene, const ClosestPoint& surface, double unit,
@@ -89,14 +83,14 @@ std::vector<VertexField> distance_fields(const RenderScene& scene, const Closest
   return fields;
 }
 
-void show_distances(const TriangleSoup& reference, const std::vector<RenderScene>& tests,
+void show_distances(const Surface& reference, const std::vector<RenderScene>& tests,
                     const std::vector<View>& views, RenderOptions options, const Context& context,
                     const CompareObserver& observer) {
   const ClosestPoint surface(reference);
   options.pass = Pass::field;
   for (std::size_t t = 0; t < tests.size(); ++t) {
     const std::vector<VertexField> fields =
-        distance_fields(tests[t], surface, kHottestDistance * diagonal_of(reference), context);
+        distance_fields(tests[t], surface, kHottestDistance * diagonal(reference), context);
     parallel_for(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         observer.distances(v, t, render(tests[t], views[v], options, context, fields));
@@ -122,16 +116,16 @@ OptionList describe(CompareOptions& o) {
   return options;
 }
 
-TriangleSoup triangles_of(const RenderScene& scene) {
-  TriangleSoup soup;
+Surface triangles_of(const RenderScene& scene) {
+  Surface surface;
   for (const SceneMesh& mesh : scene.meshes) {
-    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    const auto first = static_cast<std::uint32_t>(surface.positions.size());
     const std::vector<Vec3f>& positions = mesh.surface.positions;
-    soup.positions.insert(soup.positions.end(), positions.begin(), positions.end());
+    surface.positions.insert(surface.positions.end(), positions.begin(), positions.end());
     for (const auto& t : mesh.mesh->triangles)
-      soup.triangles.push_back({first + t[0].value, first + t[1].value, first + t[2].value});
+      surface.triangles.push_back({first + t[0].value, first + t[1].value, first + t[2].value});
   }
-  return soup;
+  return surface;
 }
 
 std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
@@ -178,10 +172,10 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
   });
   context.advance_or_throw("compare", 0.9);
 
-  const TriangleSoup surface = triangles_of(scene);
+  const Surface surface = triangles_of(scene);
   for (std::size_t t = 0; t < tests.size(); ++t) {
     summarize(result[t]);
-    result[t].reference_diagonal = diagonal_of(surface);
+    result[t].reference_diagonal = diagonal(surface);
     result[t].distance =
         surface_distance(surface, triangles_of(test_scenes[t]), options.distance_samples, context);
   }

@@ -87,6 +87,6 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
                                 const CompareObserver& observer = {});
 
 /// All triangles of a scene, in world space.
-TriangleSoup triangles_of(const RenderScene& scene);
+Surface triangles_of(const RenderScene& scene);
 
 }  // namespace fovea

@@ -22,7 +22,7 @@ std::vector<double> distances(const std::vector<Vec3d>& points, const ClosestPoi
   return result;
 }
 
-Deviation deviation(const TriangleSoup& from, const ClosestPoint& to, std::int64_t samples,
+Deviation deviation(const Surface& from, const ClosestPoint& to, std::int64_t samples,
                     const Context& context) {
   Deviation result;
   const std::vector<double> spread = distances(sample_surface(from, samples, context.seed), to, context);
@@ -50,7 +50,7 @@ Deviation deviation(const TriangleSoup& from, const ClosestPoint& to, std::int64
 
 }  // namespace
 
-std::vector<Vec3d> sample_surface(const TriangleSoup& surface, std::int64_t count, std::uint64_t seed) {
+std::vector<Vec3d> sample_surface(const Surface& surface, std::int64_t count, std::uint64_t seed) {
   std::vector<double> area_before{0};
   const auto at = [&](std::uint32_t v) { return Vec3d(surface.positions[v]); };
   for (const auto& t : surface.triangles) {
@@ -73,8 +73,8 @@ std::vector<Vec3d> sample_surface(const TriangleSoup& surface, std::int64_t coun
   return points;
 }
 
-SurfaceDistance surface_distance(const TriangleSoup& reference, const TriangleSoup& test,
-                                 std::int64_t samples, const Context& context) {
+SurfaceDistance surface_distance(const Surface& reference, const Surface& test, std::int64_t samples,
+                                 const Context& context) {
   SurfaceDistance result;
   if (reference.triangles.empty() || test.triangles.empty()) {
     if (reference.triangles.empty() && test.triangles.empty()) return result;

@@ -25,10 +25,10 @@ struct SurfaceDistance {
 /// Measures with `samples` points on each surface, spread by area (one in each of as many equal shares, the
 /// seed is the context's), and all its vertices for the maximum. Infinite if exactly one surface is empty, 0
 /// if both are. The same for any number of threads. About O(#samples log #F).
-SurfaceDistance surface_distance(const TriangleSoup& reference, const TriangleSoup& test,
-                                 std::int64_t samples, const Context& context);
+SurfaceDistance surface_distance(const Surface& reference, const Surface& test, std::int64_t samples,
+                                 const Context& context);
 
 /// Points on a surface, spread by area; fewer than `count` only if it has no area.
-std::vector<Vec3d> sample_surface(const TriangleSoup& surface, std::int64_t count, std::uint64_t seed);
+std::vector<Vec3d> sample_surface(const Surface& surface, std::int64_t count, std::uint64_t seed);
 
 }  // namespace fovea

@@ -34,11 +34,11 @@ Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
 }
 
 struct ClosestPoint::Tree {
-  const TriangleSoup* surface = nullptr;
+  const Surface* surface = nullptr;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
-  explicit Tree(const TriangleSoup& triangles) : surface(&triangles) {
+  explicit Tree(const Surface& triangles) : surface(&triangles) {
     if (triangles.triangles.empty()) return;
     // One thread: many small trees are built, and results must not depend on the build's order.
     device = rtcNewDevice("threads=1");
@@ -68,7 +68,7 @@ struct ClosestPoint::Tree {
 namespace {
 
 struct Query {
-  const TriangleSoup* surface;
+  const Surface* surface;
   Vec3d p;
   ClosestPoint::Hit best;
 };
@@ -90,7 +90,7 @@ bool look_at_triangle(RTCPointQueryFunctionArguments* arguments) {
 
 }  // namespace
 
-ClosestPoint::ClosestPoint(const TriangleSoup& surface) : tree_(std::make_unique<Tree>(surface)) {}
+ClosestPoint::ClosestPoint(const Surface& surface) : tree_(std::make_unique<Tree>(surface)) {}
 ClosestPoint::~ClosestPoint() = default;
 ClosestPoint::ClosestPoint(ClosestPoint&&) noexcept = default;
 ClosestPoint& ClosestPoint::operator=(ClosestPoint&&) noexcept = default;

@@ -1,20 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <vector>
 
 #include "fovea/base/math.h"
+#include "fovea/surface/surface.h"
 
 namespace fovea {
-
-/// Triangles over points, in one space.
-struct TriangleSoup {
-  std::vector<Vec3f> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices into `positions`.
-};
 
 /// The point of a triangle that is nearest to p (Ericson 2005, 5.1.5).
 Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c);
@@ -29,7 +21,7 @@ class ClosestPoint {
   };
 
   /// O(#F log #F). `surface` must outlive this.
-  explicit ClosestPoint(const TriangleSoup& surface);
+  explicit ClosestPoint(const Surface& surface);
   ~ClosestPoint();
   ClosestPoint(ClosestPoint&&) noexcept;
   ClosestPoint& operator=(ClosestPoint&&) noexcept;

@@ -1,0 +1,152 @@
+#include "fovea/surface/diffusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/parallel.h"
+#include "fovea/surface/curvature.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr std::size_t kGrain = 1 << 13;
+/// No vertex gives its heat away faster than this over the mean area of a vertex; a regular one does
+/// with 3.5.
+constexpr double kFastest = 60;
+/// Nor faster than this over the square of the diagonal: what has next to no area is not looked at more
+/// closely.
+constexpr double kMostDetail = 1e9;
+/// What the terms that are left out add up to.
+constexpr double kPrecision = 1e-6;
+
+/// Cotangent of the angle at p between a and b, at least 0; 0 in triangles without area.
+double cotangent(Vec3d p, Vec3d a, Vec3d b) {
+  const double area = length(cross(a - p, b - p));
+  return area > 0 ? std::max(dot(a - p, b - p) / area, 0.0) : 0;
+}
+
+/// e^−z times the modified Bessel functions I_0(z) … I_n(z), without a tail of `kPrecision`: by Miller's
+/// recurrence downwards, scaled so that I_0 + 2 Σ I_k = e^z.
+std::vector<double> scaled_bessel(double z) {
+  // The terms fall like exp(−k² / 2z).
+  const auto start = static_cast<std::size_t>(30 + 10 * std::sqrt(z));
+  std::vector<double> values(start + 1, 0);
+  double above = 0, here = 1e-30, sum = 0;
+  for (std::size_t k = start; k > 0; --k) {
+    values[k] = here;
+    sum += 2 * here;
+    const double below = above + 2 * static_cast<double>(k) / z * here;
+    above = here;
+    here = below;
+    if (here < 1e200) continue;
+    for (std::size_t i = k; i <= start; ++i) values[i] *= 1e-200;
+    above *= 1e-200, here *= 1e-200, sum *= 1e-200;
+  }
+  values[0] = here;
+  sum += here;
+  for (double& value : values) value /= sum;
+  double tail = 0;
+  while (values.size() > 1 && tail + 2 * values.back() < kPrecision) {
+    tail += 2 * values.back();
+    values.pop_back();
+  }
+  return values;
+}
+
+}  // namespace
+
+HeatFlow::HeatFlow(const Surface& surface, const Adjacency& adjacency, const Context& context) {
+  const std::size_t count = adjacency.vertex_count();
+  first_.assign(count + 1, 0);
+  for (std::uint32_t v = 0; v < count; ++v)
+    first_[v + 1] = first_[v] + static_cast<std::uint32_t>(adjacency.neighbors(v).size());
+  column_.resize(first_.back());
+  rate_.resize(first_.back());
+  leave_.assign(count, 0);
+  const VertexField areas = vertex_areas(surface, adjacency, context);
+  double total = 0;
+  std::size_t used = 0;
+  for (const float area : areas.values()) {
+    total += static_cast<double>(area);
+    used += area > 0;
+  }
+  const double d = diagonal(surface);
+  const double fastest =
+      total > 0 ? std::min(kFastest * static_cast<double>(used) / total, kMostDetail / (d * d)) : 1;
+  parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> weights;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto v = static_cast<std::uint32_t>(i);
+      const std::span<const std::uint32_t> neighbors = adjacency.neighbors(v);
+      weights.assign(neighbors.size(), 0);
+      const auto add = [&](std::uint32_t w, double weight) {
+        weights[static_cast<std::size_t>(std::lower_bound(neighbors.begin(), neighbors.end(), w) -
+                                         neighbors.begin())] += weight / 2;
+      };
+      const Vec3d p = surface.position(v);
+      for (const std::uint32_t c : adjacency.corners(v)) {
+        const auto& t = surface.triangles[c / 3];
+        const std::uint32_t a = t[(c + 1) % 3], b = t[(c + 2) % 3];
+        const Vec3d pa = surface.position(a), pb = surface.position(b);
+        add(a, cotangent(pb, p, pa));
+        add(b, cotangent(pa, p, pb));
+      }
+      double sum = 0;
+      for (const double weight : weights) sum += weight;
+      const double area = std::max(static_cast<double>(areas.values()[i]), sum / fastest);
+      if (!(area > 0)) weights.assign(weights.size(), 0);
+      sum = 0;
+      for (std::size_t k = 0; k < neighbors.size(); ++k) {
+        column_[first_[i] + k] = neighbors[k];
+        rate_[first_[i] + k] = static_cast<float>(weights[k] / std::max(area, 1e-300));
+        sum += static_cast<double>(rate_[first_[i] + k]);
+      }
+      leave_[i] = static_cast<float>(sum);
+    }
+  });
+  // Gershgorin: a row's diagonal and the sum beside it.
+  for (const float x : leave_) fastest_ = std::max(fastest_, 2 * static_cast<double>(x));
+}
+
+std::vector<VertexField> HeatFlow::run(const VertexField& field, std::span<const double> times,
+                                       const Context& context) const {
+  std::vector<VertexField> results;
+  std::vector<float> now(field.values().begin(), field.values().end());
+  double before = 0;
+  for (const double time : times) {
+    step(now, time - before, context);
+    before = time;
+    results.emplace_back(now);
+  }
+  return results;
+}
+
+/// field ← exp(−time · A) field, A the matrix of rates with eigenvalues in [0, fastest]. With X = 2 A /
+/// fastest − 1 and z = time · fastest / 2 that is e^−z (I_0(z) + 2 Σ (−1)^k I_k(z) T_k(X)).
+void HeatFlow::step(std::vector<float>& field, double time, const Context& context) const {
+  const double z = time * fastest_ / 2;
+  if (!(z > 0)) return;
+  const std::vector<double> bessel = scaled_bessel(z);
+  const auto scale = static_cast<float>(2 / fastest_);
+  std::vector<float> before = field, now = field, sum(field.size());
+  for (std::size_t i = 0; i < field.size(); ++i) sum[i] = static_cast<float>(bessel[0]) * field[i];
+  for (std::size_t k = 1; k < bessel.size(); ++k) {
+    const auto coefficient = static_cast<float>(k % 2 == 0 ? 2 * bessel[k] : -2 * bessel[k]);
+    // T_1 = X f, T_k+1 = 2 X T_k − T_k−1; the new one takes the place of the oldest.
+    const float factor = k == 1 ? 1.0f : 2.0f, subtract = k == 1 ? 0.0f : 1.0f;
+    parallel_for(context, field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        float flow = leave_[v] * now[v];
+        for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) flow -= rate_[i] * now[column_[i]];
+        const float next = factor * (scale * flow - now[v]) - subtract * before[v];
+        before[v] = next;
+        sum[v] += coefficient * next;
+      }
+    });
+    std::swap(before, now);
+  }
+  field = std::move(sum);
+}
+
+}  // namespace fovea

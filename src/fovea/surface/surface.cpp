@@ -1,0 +1,77 @@
+#include "fovea/surface/surface.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr std::size_t kGrain = 1 << 13;
+
+/// Counts per item to where each item's list begins; one more at the end.
+void add_up(std::vector<std::uint32_t>& counts) {
+  std::uint32_t sum = 0;
+  for (std::uint32_t& c : counts) c = std::exchange(sum, sum + c);
+}
+
+}  // namespace
+
+Surface surface_of(const TriMesh& mesh) {
+  Surface surface;
+  surface.positions = mesh.positions;
+  surface.triangles.reserve(mesh.face_count());
+  for (const auto& t : mesh.triangles) surface.triangles.push_back({t[0].value, t[1].value, t[2].value});
+  return surface;
+}
+
+double diagonal(const Surface& surface) {
+  Box box;
+  for (const auto& triangle : surface.triangles) {
+    for (const std::uint32_t v : triangle) box.add(surface.position(v));
+  }
+  return surface.triangles.empty() ? 0 : box.diagonal();
+}
+
+Adjacency::Adjacency(const Surface& surface, const Context& context) {
+  const std::size_t count = surface.positions.size();
+  first_corner_.assign(count + 1, 0);
+  for (const auto& triangle : surface.triangles) {
+    for (const std::uint32_t v : triangle) ++first_corner_[v];
+  }
+  add_up(first_corner_);
+  corners_.resize(3 * surface.triangles.size());
+  std::vector<std::uint32_t> at(first_corner_.begin(), first_corner_.end() - 1);
+  for (std::uint32_t c = 0; c < corners_.size(); ++c) corners_[at[surface.triangles[c / 3][c % 3]]++] = c;
+
+  // Twice over: how many, then which.
+  const auto for_neighbors = [&](auto&& f) {
+    parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> found;
+      for (std::size_t v = begin; v < end; ++v) {
+        found.clear();
+        for (const std::uint32_t c : corners(static_cast<std::uint32_t>(v))) {
+          const auto& triangle = surface.triangles[c / 3];
+          found.push_back(triangle[(c + 1) % 3]);
+          found.push_back(triangle[(c + 2) % 3]);
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        f(v, found);
+      }
+    });
+  };
+  first_neighbor_.assign(count + 1, 0);
+  for_neighbors([&](std::size_t v, const std::vector<std::uint32_t>& found) {
+    first_neighbor_[v] = static_cast<std::uint32_t>(found.size());
+  });
+  add_up(first_neighbor_);
+  neighbors_.resize(first_neighbor_.back());
+  for_neighbors([&](std::size_t v, const std::vector<std::uint32_t>& found) {
+    std::copy(found.begin(), found.end(), neighbors_.begin() + first_neighbor_[v]);
+  });
+}
+
+}  // namespace fovea
