@@ -146,7 +146,9 @@ void HeatFlow::step(std::vector<float>& field, double time, const Context& conte
     });
     std::swap(before, now);
   }
-  field = std::move(sum);
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    if (leave_[v] > 0) field[v] = sum[v];  // the others keep theirs to the bit
+  }
 }
 
 }  // namespace fovea

@@ -1,0 +1,56 @@
+#include "fovea/saliency/contrast.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fovea {
+
+std::vector<VertexField> center_surround(const Surface& surface, const Adjacency& adjacency,
+                                         const VertexField& signal, std::span<const ScalePair> pairs,
+                                         double cutoff, DistanceKind kind, const Context& context) {
+  std::vector<double> widths;
+  for (const ScalePair& pair : pairs) widths.insert(widths.end(), {pair.center, pair.surround});
+  std::sort(widths.begin(), widths.end());
+  widths.erase(std::unique(widths.begin(), widths.end()), widths.end());
+  const std::vector<VertexField> averages =
+      gaussian_averages(surface, adjacency, signal, widths, cutoff, kind, context);
+  const auto average = [&](double width) {
+    const auto at = std::lower_bound(widths.begin(), widths.end(), width) - widths.begin();
+    return averages[static_cast<std::size_t>(at)].values();
+  };
+  std::vector<VertexField> contrasts;
+  for (const ScalePair& pair : pairs) {
+    const std::span<const float> center = average(pair.center), surround = average(pair.surround);
+    VertexField& contrast = contrasts.emplace_back(signal.size());
+    for (std::size_t v = 0; v < center.size(); ++v) contrast.values()[v] = std::abs(center[v] - surround[v]);
+  }
+  return contrasts;
+}
+
+VertexField promote_peaks(const VertexField& field, const Adjacency& adjacency) {
+  const std::span<const float> values = field.values();
+  VertexField result(field.size());
+  if (field.empty()) return result;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double least = static_cast<double>(*low), range = static_cast<double>(*high) - least;
+  if (!(range > 0)) return result;
+  const auto highest = static_cast<std::uint32_t>(high - values.begin());
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < values.size(); ++v) {
+    const std::span<const std::uint32_t> neighbors = adjacency.neighbors(v);
+    if (v == highest || neighbors.empty()) continue;
+    if (!std::all_of(neighbors.begin(), neighbors.end(),
+                     [&](std::uint32_t w) { return values[v] > values[w]; }))
+      continue;
+    sum += (static_cast<double>(values[v]) - least) / range;
+    ++count;
+  }
+  const double mean = count > 0 ? sum / static_cast<double>(count) : 0,
+               factor = (1 - mean) * (1 - mean) / range;
+  for (std::size_t v = 0; v < values.size(); ++v)
+    result.values()[v] = static_cast<float>((static_cast<double>(values[v]) - least) * factor);
+  return result;
+}
+
+}  // namespace fovea

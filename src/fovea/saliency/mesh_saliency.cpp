@@ -1,0 +1,28 @@
+#include "fovea/saliency/mesh_saliency.h"
+
+#include "fovea/saliency/contrast.h"
+#include "fovea/surface/curvature.h"
+
+namespace fovea {
+
+MeshSaliency mesh_saliency(const Surface& surface, const Adjacency& adjacency,
+                           const MeshSaliencyOptions& options, const Context& context) {
+  MeshSaliency result;
+  result.curvature = mean_curvature(surface, adjacency, context);
+  result.saliency = VertexField(surface.positions.size());
+  const double unit = options.unit_rel * diagonal(surface);
+  if (!(unit > 0)) return result;
+  std::vector<ScalePair> pairs;
+  for (int i = 2; i <= 6; ++i) pairs.push_back({i * unit, 2 * i * unit});
+  result.contrasts =
+      center_surround(surface, adjacency, result.curvature, pairs, options.cutoff, options.distance, context);
+  for (const VertexField& contrast : result.contrasts) {
+    const VertexField promoted = promote_peaks(contrast, adjacency);
+    for (std::uint32_t v = 0; v < promoted.size(); ++v) {
+      if (!adjacency.corners(v).empty()) result.saliency.values()[v] += promoted.values()[v];
+    }
+  }
+  return result;
+}
+
+}  // namespace fovea

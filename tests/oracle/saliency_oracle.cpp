@@ -1,0 +1,74 @@
+#include "oracle/saliency_oracle.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fovea::test {
+
+VertexField gaussian_average(const VertexField& field, double sigma, double cutoff,
+                             const Distance& distance) {
+  VertexField result(field.size());
+  for (std::uint32_t v = 0; v < field.size(); ++v) {
+    double sum = 0, weights = 0;
+    for (std::uint32_t x = 0; x < field.size(); ++x) {
+      const double d = distance(v, x);
+      if (d > cutoff * sigma) continue;
+      const double weight = std::exp(-d * d / (2 * sigma * sigma));
+      sum += weight * static_cast<double>(field.values()[x]);
+      weights += weight;
+    }
+    result.values()[v] = static_cast<float>(sum / weights);
+  }
+  return result;
+}
+
+VertexField promoted(const VertexField& field, const Surface& surface) {
+  const float low = *std::min_element(field.values().begin(), field.values().end());
+  const float high = *std::max_element(field.values().begin(), field.values().end());
+  VertexField result(field.size());
+  if (high == low) return result;
+  for (std::uint32_t v = 0; v < field.size(); ++v)
+    result.values()[v] = (field.values()[v] - low) / (high - low);
+  std::vector<bool> is_peak(field.size(), false);
+  for (const auto& t : surface.triangles) {
+    for (const std::uint32_t v : t) is_peak[v] = true;
+  }
+  for (const auto& t : surface.triangles) {
+    for (const std::uint32_t v : t) {
+      for (const std::uint32_t w : t) {
+        if (w != v && result.values()[w] >= result.values()[v]) is_peak[v] = false;
+      }
+    }
+  }
+  double sum = 0;
+  int count = 0;
+  bool skipped = false;
+  for (std::uint32_t v = 0; v < field.size(); ++v) {
+    if (result.values()[v] == 1 && !skipped) {
+      skipped = true;  // the global maximum, once
+    } else if (is_peak[v]) {
+      sum += static_cast<double>(result.values()[v]);
+      ++count;
+    }
+  }
+  const double mean = count > 0 ? sum / count : 0;
+  for (float& x : result.values()) x *= static_cast<float>((1 - mean) * (1 - mean));
+  return result;
+}
+
+VertexField lee_saliency(const VertexField& curvature, const Surface& surface, double unit, double cutoff,
+                         const Distance& distance) {
+  VertexField result(curvature.size());
+  for (int i = 2; i <= 6; ++i) {
+    const VertexField fine = gaussian_average(curvature, i * unit, cutoff, distance),
+                      coarse = gaussian_average(curvature, 2 * i * unit, cutoff, distance);
+    VertexField level(curvature.size());
+    for (std::uint32_t v = 0; v < curvature.size(); ++v)
+      level.values()[v] = std::abs(fine.values()[v] - coarse.values()[v]);
+    level = promoted(level, surface);
+    for (std::uint32_t v = 0; v < curvature.size(); ++v) result.values()[v] += level.values()[v];
+  }
+  return result;
+}
+
+}  // namespace fovea::test

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+
+#include "fovea/model/field.h"
+#include "fovea/surface/surface.h"
+
+namespace fovea::test {
+
+using Distance = std::function<double(std::uint32_t a, std::uint32_t b)>;
+
+/// The Gaussian average at every vertex, over all vertices, by its formula. O(#V²).
+VertexField gaussian_average(const VertexField& field, double sigma, double cutoff, const Distance& distance);
+
+/// Itti's normalisation by its words: scale to [0, 1], find the local maxima, multiply.
+VertexField promoted(const VertexField& field, const Surface& surface);
+
+/// Mesh saliency of Lee et al. (2005) from mean curvature, with any distance. O(#V²).
+VertexField lee_saliency(const VertexField& curvature, const Surface& surface, double unit, double cutoff,
+                         const Distance& distance);
+
+}  // namespace fovea::test
