@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kGrain = 1 << 13;
 /// No vertex gives its heat away faster than this over the mean area of a vertex; a regular one does
 /// with 3.5.
-constexpr double kFastest = 60;
+constexpr double kFastest = 20;
 /// Nor faster than this over the square of the diagonal: what has next to no area is not looked at more
 /// closely.
 constexpr double kMostDetail = 1e9;
