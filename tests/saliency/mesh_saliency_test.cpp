@@ -16,7 +16,7 @@ namespace {
 MeshSaliency saliency(const Surface& surface, const MeshSaliencyOptions& options = {}, int threads = 1) {
   Context context;
   context.threads = threads;
-  return mesh_saliency(surface, Adjacency(surface, context), options, context);
+  return mesh_saliency(surface, options, context);
 }
 
 /// A sphere with bumps all over.
@@ -151,7 +151,7 @@ TEST(MeshSaliency, OverTheSurfaceANeighborDoesNotMatter) {
     double most = 0;
     const auto contrasts = [&](const Surface& surface) {
       const Adjacency adjacency(surface, context);
-      const VertexField h = mesh_saliency(surface, adjacency, {}, context).curvature;
+      const VertexField h = mesh_saliency(surface, {}, context).curvature;
       const ScalePair pairs[] = {{6 * unit, 12 * unit}};
       return center_surround(surface, adjacency, h, pairs, 2, kind, context)[0];
     };

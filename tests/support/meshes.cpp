@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fovea/base/context.h"
+#include "fovea/base/random.h"
 
 namespace fovea::test {
 
@@ -497,6 +498,53 @@ Model skinned_model(int quads) {
   bend.channels = {{0, 2, "rotation", {}}};
   model.animations = {bend};
   return model;
+}
+
+namespace {
+
+template <class Id>
+std::vector<Id> shuffled_ids(std::size_t count, Random& random) {
+  std::vector<Id> ids;
+  for (std::size_t i = 0; i < count; ++i) ids.push_back(Id{i});
+  for (std::size_t i = count; i > 1; --i)
+    std::swap(ids[i - 1], ids[random.below(static_cast<std::uint32_t>(i))]);
+  return ids;
+}
+
+}  // namespace
+
+TriMesh shuffled(const TriMesh& mesh) {
+  Random random(11);
+  TriMesh result = mesh;
+  const auto vertices = shuffled_ids<VertexId>(mesh.vertex_count(), random);  // old -> new
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    result.positions[vertices[v].index()] = mesh.positions[v];
+    for (std::size_t t = 0; t < mesh.target_count(); ++t)
+      result.position_morphs[t][vertices[v].index()] = mesh.position_morphs[t][v];
+  }
+  const auto faces = shuffled_ids<FaceId>(mesh.face_count(), random);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k)
+      result.triangles[faces[f].index()][k] = vertices[mesh.triangles[f][k].index()];
+    result.face_part[faces[f].index()] = mesh.face_part[f];
+  }
+  for (std::size_t l = 0; l < mesh.layers.size(); ++l) {
+    const AttributeLayer& from = mesh.layers[l];
+    AttributeLayer& to = result.layers[l];
+    const auto values = shuffled_ids<ValueId>(from.size(), random);
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      for (int k = 0; k < from.width; ++k) to.value(values[v])[k] = from.value(ValueId{v})[k];
+    }
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const ValueId value = from.corner_value[corner(FaceId{f}, k).index()];
+        to.corner_value[corner(faces[f], k).index()] = value.valid() ? values[value.index()] : value;
+      }
+    }
+  }
+  result.source_vertex.clear();
+  check(result);
+  return result;
 }
 
 }  // namespace fovea::test

@@ -88,6 +88,9 @@ struct NamedMesh {
 /// One of each, for tests that hold for any mesh.
 std::vector<NamedMesh> all_families();
 
+/// The same mesh with vertices, triangles and values in random order, as scans and exports have them.
+TriMesh shuffled(const TriMesh& mesh);
+
 /// A model that shows each mesh once, in one scene; materials as many as the parts name.
 Model model_of(std::vector<TriMesh> meshes);
 Model model_of(TriMesh mesh);

@@ -2,11 +2,15 @@
 
 #include "fovea/saliency/contrast.h"
 #include "fovea/surface/curvature.h"
+#include "fovea/surface/local_order.h"
 
 namespace fovea {
 
-MeshSaliency mesh_saliency(const Surface& surface, const Adjacency& adjacency,
-                           const MeshSaliencyOptions& options, const Context& context) {
+namespace {
+
+MeshSaliency saliency_in_order(const Surface& surface, const MeshSaliencyOptions& options,
+                               const Context& context) {
+  const Adjacency adjacency(surface, context);
   MeshSaliency result;
   result.curvature = mean_curvature(surface, adjacency, context);
   result.saliency = VertexField(surface.positions.size());
@@ -22,6 +26,18 @@ MeshSaliency mesh_saliency(const Surface& surface, const Adjacency& adjacency,
       if (!adjacency.corners(v).empty()) result.saliency.values()[v] += promoted.values()[v];
     }
   }
+  return result;
+}
+
+}  // namespace
+
+MeshSaliency mesh_saliency(const Surface& surface, const MeshSaliencyOptions& options,
+                           const Context& context) {
+  const LocalOrder order = local_order(surface);
+  MeshSaliency result = saliency_in_order(reordered(surface, order), options, context);
+  result.curvature = in_own_order(result.curvature, order);
+  for (VertexField& contrast : result.contrasts) contrast = in_own_order(contrast, order);
+  result.saliency = in_own_order(result.saliency, order);
   return result;
 }
 

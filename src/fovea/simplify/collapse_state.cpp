@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fovea/base/parallel.h"
-#include "fovea/simplify/local_order.h"
+#include "fovea/surface/local_order.h"
 
 namespace fovea {
 
@@ -126,7 +126,7 @@ void Builder::make_connectivity() {
   CollapseMesh& all = state_.mesh;
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshSlot& slot = state_.slots[m];
-    const LocalOrder order = local_order(*meshes_[m]);
+    const LocalOrder order = local_order(surface_of(*meshes_[m]));
     std::vector<std::uint32_t> vertex_of(order.vertices.size());
     for (const VertexId v : order.vertices) {
       vertex_of[v.index()] = static_cast<std::uint32_t>(all.vertices.size());

@@ -89,7 +89,8 @@ struct VanishCandidate {
 };
 
 /// All that the engine works on: the meshes of a scene in one set of arrays, each in a local order
-/// (local_order.h), lengths in units of the scene's diagonal so that costs of different meshes compare.
+/// (surface/local_order.h), lengths in units of the scene's diagonal so that costs of different meshes
+/// compare.
 struct CollapseState {
   CollapseState() = default;
   CollapseState(CollapseState&&) = default;  // not copied: channels point into `columns`
