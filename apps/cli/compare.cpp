@@ -91,6 +91,7 @@ class Compare : public Verb {
   }
 
   int run(Session& session) override {
+    check(options_.pose);
     check_input(reference_);
     if (!report_.empty()) check_output(report_, inputs(), force_, check_report_output);
     for (const std::string& test : tests_) check_input(test);

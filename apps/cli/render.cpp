@@ -83,6 +83,7 @@ class Render : public Verb {
       throw Error(ErrorKind::usage, "--pass field and --field go together", {},
                   "--field names the numbers that --pass field shows");
     }
+    check(pose_options_);
     options_.background = parse_color(background_);
   }
 

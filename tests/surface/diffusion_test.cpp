@@ -39,11 +39,12 @@ TEST(HeatFlow, OnAPlaneAPointBecomesAGaussian) {
   const double peak = 1e-4 / (2 * 3.14159265 * sigma * sigma);  // the heat of one vertex's area
   for (std::uint32_t v = 0; v < surface.positions.size(); ++v) {
     const double r = length(surface.position(v) - surface.position(middle));
+    // Six vertices to a width: the lattice is not a plane by some hundredths of the peak.
     EXPECT_NEAR(spread.values()[v], peak * std::exp(-r * r / (2 * sigma * sigma)), 0.02 * peak) << r;
   }
 }
 
-TEST(HeatFlow, KeepsConstantsAndHeatAndBounds) {
+TEST(HeatFlow, KeepsConstantsAndBounds) {
   for (const test::NamedMesh& named : test::all_families()) {
     const Surface surface = surface_of(named.mesh);
     const std::size_t count = surface.positions.size();
@@ -56,7 +57,8 @@ TEST(HeatFlow, KeepsConstantsAndHeatAndBounds) {
 }
 
 TEST(HeatFlow, OnASphereHarmonicsFadeAtTheirRate) {
-  // x, y, z are eigenfunctions of the Laplacian with eigenvalue −2.
+  // x, y, z are eigenfunctions of the Laplacian with eigenvalue −2. Of an icosphere with edges of 0.07 it is
+  // less by about their square: some thousandths at time 0.7.
   const Surface surface = surface_of(test::icosphere(4));
   VertexField field(surface.positions.size());
   for (std::uint32_t v = 0; v < field.size(); ++v) field.values()[v] = surface.positions[v].z;

@@ -226,12 +226,15 @@ OptionList describe(PoseOptions& o) {
           {"time", "Moment of the animation.", &o.time_s, "seconds", 0, 1e9}};
 }
 
-Pose pose_of(const Model& model, const PoseOptions& options) {
-  if (options.animation)
-    return pose_at(model, static_cast<std::size_t>(*options.animation), options.time_s.value_or(0));
-  if (options.time_s)
+void check(const PoseOptions& options) {
+  if (options.time_s && !options.animation)
     throw Error(ErrorKind::usage, "--time needs --animation", {}, "for example --animation 0");
-  return rest_pose(model);
+}
+
+Pose pose_of(const Model& model, const PoseOptions& options) {
+  check(options);
+  if (!options.animation) return rest_pose(model);
+  return pose_at(model, static_cast<std::size_t>(*options.animation), options.time_s.value_or(0));
 }
 
 Pose pose_at(const Model& model, std::size_t animation, double time_s) {

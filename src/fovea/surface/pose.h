@@ -30,7 +30,9 @@ struct PoseOptions {
 };
 OptionList describe(PoseOptions& options);
 
-/// Throws Error(usage) for a time without an animation, and as `pose_at`.
+/// Throws Error(usage) for a time without an animation.
+void check(const PoseOptions& options);
+/// Throws as `check` and `pose_at`.
 Pose pose_of(const Model& model, const PoseOptions& options);
 
 /// Time of an animation's last key, in seconds.
