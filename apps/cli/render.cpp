@@ -45,12 +45,13 @@ class Render : public Verb {
         {{"view", "Draw this view of the set alone, counted from 1; 0 draws all.", &view_, "", 0, 4096},
          {"columns", "Views side by side in a sheet; 0 makes it about square.", &columns_, "", 0, 4096}});
     arguments.add("Picture", describe(options_));
-    arguments.add("Picture",
-                  {{"background", "Colour behind the model, as #RRGGBB.", &background_, "colour"},
-                   {"field",
-                    "Numbers per vertex for --pass field: a .npy or .csv file, or the name of a vertex "
-                    "attribute such as _IMPORTANCE.",
-                    &field_, "file or name"}});
+    arguments.add(
+        "Picture",
+        {{"background", "Colour behind the model, as #RRGGBB.", &background_, "colour"},
+         {"field",
+          "Numbers per vertex for --pass field or region: a .npy or .csv file, or the name of a vertex "
+          "attribute such as _IMPORTANCE.",
+          &field_, "file or name"}});
     arguments.add("Picture", describe(pose_options_));
     arguments.add("Output", {describe_output(output_), describe_force(force_)});
     arguments.add("Limits", describe(read_options_));
@@ -79,13 +80,15 @@ class Render : public Verb {
   void check_request() {
     check_input(input_);
     check_output(output_, {input_}, force_, check_image_output);
-    if ((options_.pass == Pass::field) != !field_.empty()) {
-      throw Error(ErrorKind::usage, "--pass field and --field go together", {},
+    if (shows_field() != !field_.empty()) {
+      throw Error(ErrorKind::usage, "--pass field (or region) and --field go together", {},
                   "--field names the numbers that --pass field shows");
     }
     check(pose_options_);
     options_.background = parse_color(background_);
   }
+
+  bool shows_field() const { return options_.pass == Pass::field || options_.pass == Pass::region; }
 
   static std::array<std::uint8_t, 3> parse_color(const std::string& text) {
     const bool ok = text.size() == 7 && text[0] == '#' &&
@@ -100,7 +103,7 @@ class Render : public Verb {
     return {channel(1), channel(3), channel(5)};
   }
 
-  /// The fields scaled to [0, 1] over all meshes; what is not a number is 0.
+  /// The fields; for heat scaled to [0, 1] over all meshes, what is not a number is 0.
   std::vector<VertexField> load_range(const Model& model, Session& session) {
     std::vector<VertexField> fields = load_fields(field_, "--field", model, read_options_);
     float low = std::numeric_limits<float>::infinity(), high = -low;
@@ -112,6 +115,7 @@ class Render : public Verb {
       }
     }
     for (VertexField& field : fields) {
+      if (options_.pass == Pass::region) break;  // numbers of regions are shown as they are
       for (float& x : field.values()) x = std::isfinite(x) && high > low ? (x - low) / (high - low) : 0.0f;
     }
     session.report["field"] = {{"source", field_}, {"low", number_json(low)}, {"high", number_json(high)}};

@@ -341,6 +341,25 @@ TEST(Render, FieldsAreShownAsHeat) {
   EXPECT_THROW(render(scene, flat_view(), options, context, std::vector{VertexField(3)}), Error);
 }
 
+TEST(Render, RegionsAreShownByTheirNumbers) {
+  // The square's lower corners are region 3, its upper ones region 8; its diagonal runs from corner 0 to 2.
+  const Model model = test::model_of(square(0, -1));
+  Context context;
+  const RenderScene scene = make_render_scene(model, rest_pose(model), context);
+  const TriMesh& mesh = model.meshes[0].surface;
+  VertexField numbers(mesh.vertex_count());
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    numbers.values()[v] = mesh.positions[v].y < 0 ? 3.0f : 8.0f;
+  const VertexField fields[] = {numbers};
+  RenderOptions options = flat_options();
+  options.pass = Pass::region;
+  const Picture picture = render(scene, flat_view(), options, context, fields);
+  EXPECT_EQ(pixel(picture, 2, 15), pixel(picture, 13, 15));
+  EXPECT_EQ(pixel(picture, 2, 0), pixel(picture, 13, 0));
+  EXPECT_NE(pixel(picture, 2, 0), pixel(picture, 2, 15));
+  EXPECT_NE(pixel(picture, 2, 0), (std::array<int, 3>{128, 128, 128}));
+}
+
 TEST(Render, LitSurfacesAreBrighterTowardsTheLight) {
   Model model = test::model_of(test::icosphere(4));
   Context context;

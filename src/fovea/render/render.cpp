@@ -172,10 +172,12 @@ Rgba PictureMaker::shade(Pass pass, const TriangleShader& shader, const SurfaceP
     case Pass::mesh: return id_color(shader.mesh_number());
     case Pass::part:
       return id_color(shader.mesh_number() * 64 + shader.mesh().mesh->face_part[shader.face().index()]);
-    case Pass::field: break;
+    case Pass::field:
+    case Pass::region: break;
   }
   const std::uint32_t mesh = shader.mesh().mesh_index;
   if (mesh >= fields_.size() || fields_[mesh].empty()) return {0.5f, 0.5f, 0.5f, 1};
+  if (pass == Pass::region) return id_color(shader.region(point, fields_[mesh].values()));
   const auto color = heat_color(shader.field(point, fields_[mesh].values()));
   return {static_cast<float>(color[0]) / 255, static_cast<float>(color[1]) / 255,
           static_cast<float>(color[2]) / 255, 1};
@@ -327,7 +329,9 @@ void check(const RenderScene& scene, const RenderOptions& options, std::span<con
 
 OptionList describe(RenderOptions& o) {
   return {{"pass", "What to show of the surface.",
-           choice(o.pass, {"base-color", "lit", "normal", "depth", "triangle", "mesh", "part", "field"}), ""},
+           choice(o.pass,
+                  {"base-color", "lit", "normal", "depth", "triangle", "mesh", "part", "field", "region"}),
+           ""},
           {"width", "Width of a view.", &o.width, "pixels", 1, 32768},
           {"height", "Height of a view.", &o.height, "pixels", 1, 32768},
           {"samples", "Places per pixel and axis where the nearest surface is looked for.", &o.samples, "", 1,

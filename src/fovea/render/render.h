@@ -24,6 +24,7 @@ enum class Pass {
   mesh,        ///< for every mesh of the scene,
   part,        ///< for every part of a mesh (its materials).
   field,       ///< A number per vertex as heat.
+  region,      ///< A colour for every region, numbered per vertex: that of the nearest corner.
 };
 
 struct RenderOptions {
@@ -45,7 +46,8 @@ struct Picture {
 /// Draws the scene. Edges are smooth: every pixel has samples² places where its nearest surface is looked
 /// for; each surface found is shaded once, in the middle of its samples, and light is averaged. Blended
 /// surfaces are laid over what is behind them, far to near, per sample. `fields` are, for Pass::field, a
-/// number in [0, 1] per vertex of each of the model's meshes [#meshes]; meshes with an empty one are grey.
+/// number in [0, 1] per vertex of each of the model's meshes [#meshes], for Pass::region the number of its
+/// region (rounded); meshes with an empty one are grey.
 ///
 /// The same bits for any number of threads and on any machine with IEEE arithmetic.
 /// O(#V + #F + #samples · depth of what is drawn over).

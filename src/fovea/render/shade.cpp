@@ -219,4 +219,11 @@ float TriangleShader::field(const SurfacePoint& point, std::span<const float> pe
   return sum;
 }
 
+std::uint32_t TriangleShader::region(const SurfacePoint& point, std::span<const float> per_vertex) const {
+  const auto most = std::max_element(point.weight.begin(), point.weight.end()) - point.weight.begin();
+  const VertexId v = mesh_->mesh->triangles[face_.index()][static_cast<std::size_t>(most)];
+  const float number = per_vertex[v.index()];
+  return number >= 0 && number < 0x1p31f ? static_cast<std::uint32_t>(number + 0.5f) : kInvalid;
+}
+
 }  // namespace fovea

@@ -46,6 +46,8 @@ class TriangleShader {
   float depth(const SurfacePoint& point) const;
   /// A number per vertex of the mesh.
   float field(const SurfacePoint& point, std::span<const float> per_vertex) const;
+  /// The number, rounded, of the corner with most weight.
+  std::uint32_t region(const SurfacePoint& point, std::span<const float> per_vertex) const;
 
  private:
   Rgba look_up(const SceneTexture& texture, const SurfacePoint& point, LastLook& last) const;
