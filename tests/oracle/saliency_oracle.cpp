@@ -2,22 +2,79 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <vector>
 
 namespace fovea::test {
 
 VertexField gaussian_average(const VertexField& field, double sigma, double cutoff,
-                             const Distance& distance) {
+                             const Distance& distance, const VertexField& weights) {
   VertexField result(field.size());
   for (std::uint32_t v = 0; v < field.size(); ++v) {
-    double sum = 0, weights = 0;
+    double sum = 0, total = 0;
     for (std::uint32_t x = 0; x < field.size(); ++x) {
       const double d = distance(v, x);
       if (d > cutoff * sigma) continue;
-      const double weight = std::exp(-d * d / (2 * sigma * sigma));
+      double weight = std::exp(-d * d / (2 * sigma * sigma));
+      if (!weights.empty()) weight *= static_cast<double>(weights.values()[x]);
       sum += weight * static_cast<double>(field.values()[x]);
-      weights += weight;
+      total += weight;
     }
-    result.values()[v] = static_cast<float>(sum / weights);
+    result.values()[v] = static_cast<float>(sum / total);
+  }
+  return result;
+}
+
+VertexField window_average(const VertexField& field, const Surface& surface, double radius, double fall) {
+  const auto count = static_cast<std::uint32_t>(field.size());
+  std::vector<std::set<std::uint32_t>> ring(count);
+  for (const auto& t : surface.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      ring[t[i]].insert(t[(i + 1) % 3]);
+      ring[t[i]].insert(t[(i + 2) % 3]);
+    }
+  }
+  double edges = 0, edge_count = 0;
+  for (std::uint32_t v = 0; v < count; ++v) {
+    for (const std::uint32_t w : ring[v]) {
+      edges += length(surface.position(v) - surface.position(w));
+      ++edge_count;
+    }
+  }
+  const double mean_edge = edges / edge_count;
+  VertexField result(count);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const Vec3d p = surface.position(v);
+    double sum = 0, total = 0;
+    const auto add = [&](Vec3d at, double value) {
+      const double weight = std::exp(-length_squared(at - p) / (2 * radius * radius));
+      sum += weight * value;
+      total += weight;
+    };
+    for (std::uint32_t x = 0; x < count; ++x) {
+      const bool inside = length(surface.position(x) - p) <= radius;
+      if (inside || ring[v].contains(x))
+        add(surface.position(x), static_cast<double>(field.values()[x]));
+      if (inside || !ring[v].contains(x)) continue;
+      const Vec3d q = surface.position(x), crossing = p + normalized(q - p) * radius;
+      std::vector<std::uint32_t> around{v, x};
+      for (const auto& t : surface.triangles) {
+        for (int i = 0; i < 3; ++i) {
+          const std::uint32_t a = t[(i + 1) % 3], b = t[(i + 2) % 3];
+          if ((a == v && b == x) || (a == x && b == v)) around.push_back(t[i]);
+        }
+      }
+      Vec3d point{0, 0, 0};
+      double value = 0, shares = 0;
+      for (const std::uint32_t y : around) {
+        const double d = length(surface.position(y) - crossing) / mean_edge, share = std::exp(-fall * d * d);
+        point = point + surface.position(y) * share;
+        value += share * static_cast<double>(field.values()[y]);
+        shares += share;
+      }
+      add(point / shares, value / shares);
+    }
+    result.values()[v] = static_cast<float>(sum / total);
   }
   return result;
 }

@@ -153,7 +153,7 @@ TEST(MeshSaliency, OverTheSurfaceANeighborDoesNotMatter) {
       const Adjacency adjacency(surface, context);
       const VertexField h = mesh_saliency(surface, {}, context).curvature;
       const ScalePair pairs[] = {{6 * unit, 12 * unit}};
-      return center_surround(surface, adjacency, h, pairs, 2, kind, context)[0];
+      return center_surround(surface, adjacency, {&h, 1}, pairs, {kind, 2, VertexWeight::one}, context)[0][0];
     };
     const VertexField a = contrasts(plain), b = contrasts(dented);
     for (std::size_t v = 0; v < plain.positions.size() / 2; ++v)

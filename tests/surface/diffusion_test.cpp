@@ -18,7 +18,7 @@ VertexField flow(const Surface& surface, const VertexField& field, double time, 
   context.threads = threads;
   const Adjacency adjacency(surface, context);
   const double times[] = {time};
-  return HeatFlow(surface, adjacency, context).run(field, times, context)[0];
+  return HeatFlow(surface, adjacency, context).run({&field, 1}, times, context)[0][0];
 }
 
 VertexField noise(std::size_t count) {
@@ -76,13 +76,29 @@ TEST(HeatFlow, TimesAddUp) {
   const HeatFlow heat(surface, adjacency, context);
   const VertexField field = noise(surface.positions.size());
   const double times[] = {0.001, 0.004, 0.02};
-  const auto all = heat.run(field, times, context);
-  for (std::size_t i = 0; i < 3; ++i) {
+  const auto all = heat.run({&field, 1}, times, context)[0];
+  for (std::size_t i = 0; i < 3; ++i) {  // whatever the series are cut off for
     const VertexField alone = flow(surface, field, times[i], 3);
     for (std::size_t v = 0; v < field.size(); ++v)
       EXPECT_NEAR(all[i].values()[v], alone.values()[v], 2e-5);  // what the series leaves out
   }
   EXPECT_EQ(flow(surface, field, 0.02, 1), flow(surface, field, 0.02, 3));
+}
+
+TEST(HeatFlow, FieldsFlowTogetherAsEachAlone) {
+  const Surface surface = surface_of(test::torus(40, 24));
+  const Context context;
+  const HeatFlow heat(surface, Adjacency(surface, context), context);
+  std::vector<VertexField> fields;
+  for (int i = 0; i < 6; ++i) {
+    fields.push_back(noise(surface.positions.size()));
+    for (float& x : fields.back().values()) x = x * static_cast<float>(i + 1) + 1;
+  }
+  const double times[] = {0.001, 0.01};
+  const auto together = heat.run(fields, times, context);
+  ASSERT_EQ(together.size(), fields.size());
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    EXPECT_EQ(together[i], heat.run({&fields[i], 1}, times, context)[0]) << i;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/random.h"
+#include "fovea/surface/curvature.h"
 #include "oracle/geodesic_oracle.h"
 #include "oracle/saliency_oracle.h"
 #include "support/meshes.h"
@@ -20,7 +21,8 @@ std::vector<VertexField> averages(const Surface& surface, const VertexField& fie
                                   int threads = 1) {
   Context context;
   context.threads = threads;
-  return gaussian_averages(surface, Adjacency(surface, context), field, sigmas, cutoff, kind, context);
+  return gaussian_averages(surface, Adjacency(surface, context), {&field, 1}, sigmas,
+                           {kind, cutoff, VertexWeight::one}, context)[0];
 }
 
 VertexField noise(std::size_t count) {
@@ -30,7 +32,18 @@ VertexField noise(std::size_t count) {
   return field;
 }
 
-constexpr DistanceKind kKinds[] = {DistanceKind::euclidean, DistanceKind::geodesic, DistanceKind::diffusion};
+constexpr DistanceKind kKinds[] = {DistanceKind::euclidean, DistanceKind::geodesic, DistanceKind::window,
+                                   DistanceKind::diffusion};
+
+/// A sheet whose squares are ten times as wide on one side as on the other.
+Surface uneven_sheet(int n) {
+  Surface surface = surface_of(test::grid(n, n));
+  for (Vec3f& p : surface.positions) {
+    p.x = p.x * (0.2f + 0.8f * p.x);
+    p.y = p.y * (0.2f + 0.8f * p.y);
+  }
+  return surface;
+}
 
 TEST(Neighborhood, EuclideanEqualsTheFormula) {
   const Surface surface = surface_of(test::torus(24, 12));
@@ -58,6 +71,90 @@ TEST(Neighborhood, GeodesicEqualsTheFormula) {
         field, sigmas[i], 2, [&](std::uint32_t a, std::uint32_t b) { return all[a][b]; });
     for (std::size_t v = 0; v < field.size(); ++v)
       EXPECT_NEAR(results[i].values()[v], expected.values()[v], 1e-6) << i << " " << v;
+  }
+}
+
+TEST(Neighborhood, ByAreaEqualsTheFormula) {
+  const Surface surface = uneven_sheet(20);
+  const VertexField field = noise(surface.positions.size());
+  const Context context;
+  const Adjacency adjacency(surface, context);
+  const double sigmas[] = {0.05, 0.1};
+  const auto results = gaussian_averages(surface, adjacency, {&field, 1}, sigmas,
+                                         {DistanceKind::euclidean, 2, VertexWeight::area}, context)[0];
+  const VertexField areas = vertex_areas(surface, adjacency, context);
+  const auto distance = [&](std::uint32_t a, std::uint32_t b) {
+    return length(surface.position(a) - surface.position(b));
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const VertexField expected = test::gaussian_average(field, sigmas[i], 2, distance, areas);
+    for (std::size_t v = 0; v < field.size(); ++v)
+      EXPECT_NEAR(results[i].values()[v], expected.values()[v], 1e-6) << i << " " << v;
+  }
+}
+
+TEST(Neighborhood, WindowEqualsTheWords) {
+  // Edges of 0.01 to 0.1: the spheres of 0.04 leave out neighbours on one side and hold dozens on the other.
+  const Surface surface = uneven_sheet(20);
+  const VertexField field = noise(surface.positions.size());
+  const std::vector<double> radii{0.04, 0.06, 0.08, 0.1, 0.2};
+  const double falls[] = {1, 1.2, 1.5, 2, 2};
+  const auto results = averages(surface, field, radii, 1, DistanceKind::window);
+  const auto straight = averages(surface, field, radii, 1, DistanceKind::euclidean);
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const VertexField expected = test::window_average(field, surface, radii[i], falls[i]);
+    for (std::size_t v = 0; v < field.size(); ++v)
+      EXPECT_NEAR(results[i].values()[v], expected.values()[v], 1e-5) << i << " " << v;
+  }
+  EXPECT_NE(results[0], straight[0]);
+  EXPECT_EQ(results[4], straight[4]);  // no edge leaves the largest sphere
+}
+
+TEST(Neighborhood, FieldsTogetherAreAsEachAlone) {
+  const Surface surface = uneven_sheet(12);
+  const Context context;
+  const Adjacency adjacency(surface, context);
+  std::vector<VertexField> fields(3, noise(surface.positions.size()));
+  for (float& x : fields[1].values()) x = x * x;
+  for (float& x : fields[2].values()) x = 1 - x;
+  const double sigmas[] = {0.05, 0.1};
+  for (const DistanceKind kind : kKinds) {
+    for (const VertexWeight weight : {VertexWeight::one, VertexWeight::area}) {
+      const Neighborhood around{kind, 2, weight};
+      const auto together = gaussian_averages(surface, adjacency, fields, sigmas, around, context);
+      for (std::size_t i = 0; i < fields.size(); ++i)
+        EXPECT_EQ(together[i],
+                  gaussian_averages(surface, adjacency, {&fields[i], 1}, sigmas, around, context)[0]);
+    }
+  }
+}
+
+TEST(Neighborhood, HeatFlowCountsVerticesAsTheOthersDo) {
+  // Where the mesh is finer on one side, averages over vertices differ from averages over area; heat flow
+  // gives either.
+  const Surface surface = uneven_sheet(60);
+  const Context context;
+  const Adjacency adjacency(surface, context);
+  VertexField field(surface.positions.size());
+  for (std::size_t v = 0; v < field.size(); ++v) field.values()[v] = 10 * surface.positions[v].x;
+  const double sigmas[] = {0.06};
+  const auto average = [&](DistanceKind kind, VertexWeight weight) {
+    return gaussian_averages(surface, adjacency, {&field, 1}, sigmas, {kind, 2, weight}, context)[0][0];
+  };
+  const auto difference = [&](const VertexField& a, const VertexField& b) {
+    double sum = 0;  // but at the border, which heat does not cross and straight averages end at
+    for (std::uint32_t v = 0; v < a.size(); ++v) {
+      const Vec3d p = surface.position(v);
+      if (std::max(std::abs(p.x - 0.5), std::abs(p.y - 0.5)) < 0.35)
+        sum += std::abs(a.values()[v] - b.values()[v]);
+    }
+    return sum;
+  };
+  for (const VertexWeight weight : {VertexWeight::one, VertexWeight::area}) {
+    const VertexWeight other = weight == VertexWeight::one ? VertexWeight::area : VertexWeight::one;
+    const VertexField heat = average(DistanceKind::diffusion, weight);
+    EXPECT_LT(difference(heat, average(DistanceKind::euclidean, weight)),
+              0.3 * difference(heat, average(DistanceKind::euclidean, other)));
   }
 }
 

@@ -5,24 +5,28 @@
 
 namespace fovea {
 
-std::vector<VertexField> center_surround(const Surface& surface, const Adjacency& adjacency,
-                                         const VertexField& signal, std::span<const ScalePair> pairs,
-                                         double cutoff, DistanceKind kind, const Context& context) {
+std::vector<std::vector<VertexField>> center_surround(const Surface& surface, const Adjacency& adjacency,
+                                                      std::span<const VertexField> signals,
+                                                      std::span<const ScalePair> pairs,
+                                                      const Neighborhood& neighborhood,
+                                                      const Context& context) {
   std::vector<double> widths;
   for (const ScalePair& pair : pairs) widths.insert(widths.end(), {pair.center, pair.surround});
   std::sort(widths.begin(), widths.end());
   widths.erase(std::unique(widths.begin(), widths.end()), widths.end());
-  const std::vector<VertexField> averages =
-      gaussian_averages(surface, adjacency, signal, widths, cutoff, kind, context);
-  const auto average = [&](double width) {
-    const auto at = std::lower_bound(widths.begin(), widths.end(), width) - widths.begin();
-    return averages[static_cast<std::size_t>(at)].values();
+  const auto averages = gaussian_averages(surface, adjacency, signals, widths, neighborhood, context);
+  const auto number = [&](double width) {
+    return static_cast<std::size_t>(std::lower_bound(widths.begin(), widths.end(), width) - widths.begin());
   };
-  std::vector<VertexField> contrasts;
-  for (const ScalePair& pair : pairs) {
-    const std::span<const float> center = average(pair.center), surround = average(pair.surround);
-    VertexField& contrast = contrasts.emplace_back(signal.size());
-    for (std::size_t v = 0; v < center.size(); ++v) contrast.values()[v] = std::abs(center[v] - surround[v]);
+  std::vector<std::vector<VertexField>> contrasts(signals.size());
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    for (const ScalePair& pair : pairs) {
+      const std::span<const float> center = averages[i][number(pair.center)].values(),
+                                   surround = averages[i][number(pair.surround)].values();
+      VertexField& contrast = contrasts[i].emplace_back(center.size());
+      for (std::size_t v = 0; v < center.size(); ++v)
+        contrast.values()[v] = std::abs(center[v] - surround[v]);
+    }
   }
   return contrasts;
 }

@@ -16,12 +16,14 @@ struct ScalePair {
   double center = 0, surround = 0;
 };
 
-/// How much a signal differs from its surroundings at several scales: |G(f, center) − G(f, surround)| for
+/// How much signals differ from their surroundings at several scales: |G(f, center) − G(f, surround)| for
 /// each pair. The same for every signal: curvature, intensity, opponency, entropy. Widths that pairs share
-/// are averaged once. [#pairs][#V]. Cost: that of `gaussian_averages`.
-std::vector<VertexField> center_surround(const Surface& surface, const Adjacency& adjacency,
-                                         const VertexField& signal, std::span<const ScalePair> pairs,
-                                         double cutoff, DistanceKind kind, const Context& context);
+/// are averaged once. [#signals][#pairs][#V]. Cost: that of `gaussian_averages`.
+std::vector<std::vector<VertexField>> center_surround(const Surface& surface, const Adjacency& adjacency,
+                                                      std::span<const VertexField> signals,
+                                                      std::span<const ScalePair> pairs,
+                                                      const Neighborhood& neighborhood,
+                                                      const Context& context);
 
 /// Promotes fields with few strong peaks (Itti, Koch, Niebur 1998; on meshes Lee et al. 2005): scales the
 /// field to [0, 1] and multiplies it by (M − m)², with M = 1 its maximum and m the mean of the other local

@@ -19,7 +19,7 @@ MeshSaliency saliency_in_order(const Surface& surface, const MeshSaliencyOptions
   std::vector<ScalePair> pairs;
   for (int i = 2; i <= 6; ++i) pairs.push_back({i * unit, 2 * i * unit});
   result.contrasts =
-      center_surround(surface, adjacency, result.curvature, pairs, options.cutoff, options.distance, context);
+      center_surround(surface, adjacency, {&result.curvature, 1}, pairs, options.neighborhood, context)[0];
   for (const VertexField& contrast : result.contrasts) {
     const VertexField promoted = promote_peaks(contrast, adjacency);
     for (std::uint32_t v = 0; v < promoted.size(); ++v) {

@@ -11,15 +11,14 @@ namespace fovea {
 
 /// How mesh saliency looks at a surface.
 struct MeshSaliencyOptions {
-  DistanceKind distance = DistanceKind::diffusion;
-  double cutoff = 2;  ///< Gaussians end at this many widths.
+  Neighborhood neighborhood;
   double unit_rel =
       0.003;  ///< ε, of the surface's diagonal; the centres are 2 … 6 ε wide, their surroundings twice.
 };
 /// As published: straight distances, cut off at two widths (Lee, Varshney, Jacobs 2005) ...
-inline constexpr MeshSaliencyOptions kLeeSaliency{DistanceKind::euclidean, 2, 0.003};
+inline constexpr MeshSaliencyOptions kLeeSaliency{{DistanceKind::euclidean, 2, VertexWeight::one}, 0.003};
 /// ... and exact geodesic ones, cut off at one (Munaretti 2007).
-inline constexpr MeshSaliencyOptions kMunarettiSaliency{DistanceKind::geodesic, 1, 0.003};
+inline constexpr MeshSaliencyOptions kMunarettiSaliency{{DistanceKind::geodesic, 1, VertexWeight::one}, 0.003};
 
 /// Where a surface stands out by its shape, with what that was made of.
 struct MeshSaliency {

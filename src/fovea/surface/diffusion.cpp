@@ -20,6 +20,14 @@ constexpr double kMostDetail = 1e9;
 /// What the terms that are left out add up to.
 constexpr double kPrecision = 1e-6;
 
+/// Fields that flow together, one in each lane of a vector register.
+constexpr std::size_t kLanes = 4;
+using Float4 [[gnu::vector_size(16)]] = float;
+float lane(float x, std::size_t) { return x; }
+float lane(Float4 x, std::size_t i) { return x[i]; }
+void set_lane(float& x, std::size_t, float value) { x = value; }
+void set_lane(Float4& x, std::size_t i, float value) { x[i] = value; }
+
 /// Cotangent of the angle at p between a and b, at least 0; 0 in triangles without area.
 double cotangent(Vec3d p, Vec3d a, Vec3d b) {
   const double area = length(cross(a - p, b - p));
@@ -29,6 +37,7 @@ double cotangent(Vec3d p, Vec3d a, Vec3d b) {
 /// e^−z times the modified Bessel functions I_0(z) … I_n(z), without a tail of `kPrecision`: by Miller's
 /// recurrence downwards, scaled so that I_0 + 2 Σ I_k = e^z.
 std::vector<double> scaled_bessel(double z) {
+  if (!(z > 0)) return {1};
   // The terms fall like exp(−k² / 2z).
   const auto start = static_cast<std::size_t>(30 + 10 * std::sqrt(z));
   std::vector<double> values(start + 1, 0);
@@ -64,10 +73,10 @@ HeatFlow::HeatFlow(const Surface& surface, const Adjacency& adjacency, const Con
   column_.resize(first_.back());
   rate_.resize(first_.back());
   leave_.assign(count, 0);
-  const VertexField areas = vertex_areas(surface, adjacency, context);
+  areas_ = vertex_areas(surface, adjacency, context);
   double total = 0;
   std::size_t used = 0;
-  for (const float area : areas.values()) {
+  for (const float area : areas_.values()) {
     total += static_cast<double>(area);
     used += area > 0;
   }
@@ -94,7 +103,8 @@ HeatFlow::HeatFlow(const Surface& surface, const Adjacency& adjacency, const Con
       }
       double sum = 0;
       for (const double weight : weights) sum += weight;
-      const double area = std::max(static_cast<double>(areas.values()[i]), sum / fastest);
+      const double area = std::max(static_cast<double>(areas_.values()[i]), sum / fastest);
+      areas_.values()[i] = static_cast<float>(area);
       if (!(area > 0)) weights.assign(weights.size(), 0);
       sum = 0;
       for (std::size_t k = 0; k < neighbors.size(); ++k) {
@@ -109,45 +119,69 @@ HeatFlow::HeatFlow(const Surface& surface, const Adjacency& adjacency, const Con
   for (const float x : leave_) fastest_ = std::max(fastest_, 2 * static_cast<double>(x));
 }
 
-std::vector<VertexField> HeatFlow::run(const VertexField& field, std::span<const double> times,
-                                       const Context& context) const {
-  std::vector<VertexField> results;
-  std::vector<float> now(field.values().begin(), field.values().end());
-  double before = 0;
-  for (const double time : times) {
-    step(now, time - before, context);
-    before = time;
-    results.emplace_back(now);
+std::vector<std::vector<VertexField>> HeatFlow::run(std::span<const VertexField> fields,
+                                                    std::span<const double> times,
+                                                    const Context& context) const {
+  std::vector<std::vector<VertexField>> results(
+      fields.size(), std::vector<VertexField>(times.size(), VertexField(leave_.size())));
+  const std::span<std::vector<VertexField>> all = results;
+  if (fields.size() == 1) {
+    run_together<float>(fields, times, all, context);
+    return results;
+  }
+  for (std::size_t i = 0; i < fields.size(); i += kLanes) {
+    const std::size_t count = std::min(kLanes, fields.size() - i);
+    run_together<Float4>(fields.subspan(i, count), times, all.subspan(i, count), context);
   }
   return results;
 }
 
-/// field ← exp(−time · A) field, A the matrix of rates with eigenvalues in [0, fastest]. With X = 2 A /
-/// fastest − 1 and z = time · fastest / 2 that is e^−z (I_0(z) + 2 Σ (−1)^k I_k(z) T_k(X)).
-void HeatFlow::step(std::vector<float>& field, double time, const Context& context) const {
-  const double z = time * fastest_ / 2;
-  if (!(z > 0)) return;
-  const std::vector<double> bessel = scaled_bessel(z);
+/// exp(−time · A) f for each time, A the matrix of rates with eigenvalues in [0, fastest]. With X = 2 A /
+/// fastest − 1 and z = time · fastest / 2 that is e^−z (I_0(z) + 2 Σ (−1)^k I_k(z) T_k(X)) f: all times are
+/// sums of the same T_k(X) f.
+template <class Number>
+void HeatFlow::run_together(std::span<const VertexField> fields, std::span<const double> times,
+                            std::span<std::vector<VertexField>> results, const Context& context) const {
+  const std::size_t count = leave_.size(), time_count = times.size();
+  // Latest first: of the series the later ones are longer.
+  std::vector<std::vector<double>> series(time_count);
+  for (std::size_t i = 0; i < time_count; ++i)
+    series[i] = scaled_bessel(times[time_count - 1 - i] * fastest_ / 2);
+  std::vector<Number> before(count), now(count), sums(count * time_count);
+  for (std::size_t v = 0; v < count; ++v) {
+    for (std::size_t f = 0; f < fields.size(); ++f) set_lane(now[v], f, fields[f].values()[v]);
+    for (std::size_t i = 0; i < time_count; ++i)
+      sums[v * time_count + i] = static_cast<float>(series[i][0]) * now[v];
+  }
+  before = now;
   const auto scale = static_cast<float>(2 / fastest_);
-  std::vector<float> before = field, now = field, sum(field.size());
-  for (std::size_t i = 0; i < field.size(); ++i) sum[i] = static_cast<float>(bessel[0]) * field[i];
-  for (std::size_t k = 1; k < bessel.size(); ++k) {
-    const auto coefficient = static_cast<float>(k % 2 == 0 ? 2 * bessel[k] : -2 * bessel[k]);
+  std::vector<float> coefficients;
+  const std::size_t terms = series.empty() ? 0 : series[0].size();
+  for (std::size_t k = 1; k < terms; ++k) {
+    coefficients.clear();
+    for (const std::vector<double>& bessel : series) {
+      if (k < bessel.size()) coefficients.push_back(static_cast<float>((k % 2 == 0 ? 2 : -2) * bessel[k]));
+    }
     // T_1 = X f, T_k+1 = 2 X T_k − T_k−1; the new one takes the place of the oldest.
     const float factor = k == 1 ? 1.0f : 2.0f, subtract = k == 1 ? 0.0f : 1.0f;
-    parallel_for(context, field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        float flow = leave_[v] * now[v];
+        Number flow = leave_[v] * now[v];
         for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) flow -= rate_[i] * now[column_[i]];
-        const float next = factor * (scale * flow - now[v]) - subtract * before[v];
+        const Number next = factor * (scale * flow - now[v]) - subtract * before[v];
         before[v] = next;
-        sum[v] += coefficient * next;
+        Number* sum = sums.data() + v * time_count;
+        for (const float coefficient : coefficients) *sum++ += coefficient * next;
       }
     });
     std::swap(before, now);
   }
-  for (std::size_t v = 0; v < field.size(); ++v) {
-    if (leave_[v] > 0) field[v] = sum[v];  // the others keep theirs to the bit
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    for (std::size_t i = 0; i < time_count; ++i) {
+      const std::span<float> result = results[f][time_count - 1 - i].values();
+      for (std::size_t v = 0; v < count; ++v)  // what does not flow stays to the bit
+        result[v] = leave_[v] > 0 ? lane(sums[v * time_count + i], f) : fields[f].values()[v];
+    }
   }
 }
 

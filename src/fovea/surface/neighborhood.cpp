@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
+#include "fovea/surface/curvature.h"
 #include "fovea/surface/diffusion.h"
 #include "fovea/surface/geodesic.h"
 
@@ -15,6 +17,8 @@ namespace {
 
 /// Vertices whose neighbourhoods one thread finds together: each search has arrays of the size of the mesh.
 constexpr std::size_t kGrain = 1 << 12;
+/// More vertices to the area than this many times the mean, or fewer, are not told apart by heat.
+constexpr double kMostDensity = 100;
 
 /// Sorted into cells of a regular grid as wide as the largest radius, so that neighbours are in 27 cells.
 class PointGrid {
@@ -78,31 +82,167 @@ class PointGrid {
   std::vector<Entry> entries_;
 };
 
+/// exp(−x / 2) for x up to a limit, by a table: to 10⁻⁷.
+class Gaussian {
+ public:
+  explicit Gaussian(double limit) : steps_per_unit_(kSteps / limit), values_(kSteps + 2) {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      values_[i] = std::exp(-0.5 * static_cast<double>(i) / steps_per_unit_);
+  }
+  double operator()(double x) const {
+    const double at = x * steps_per_unit_;
+    const auto i = static_cast<std::size_t>(at);
+    return values_[i] + (at - static_cast<double>(i)) * (values_[i + 1] - values_[i]);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 1 << 12;
+  double steps_per_unit_;
+  std::vector<double> values_;
+};
+
+/// The fields at a vertex or between them.
+struct Sample {
+  double weight = 0;                   ///< What it counts for.
+  std::span<const double> weighted;  ///< [#fields], times that.
+};
+
 /// The averages at one vertex, of neighbours that come one by one.
 class Averager {
  public:
-  Averager(std::span<const double> sigmas, double cutoff) {
-    for (const double sigma : sigmas) scales_.push_back({-0.5 / (sigma * sigma), cutoff * sigma, 0, 0});
+  Averager(std::span<const double> sigmas, double cutoff, std::size_t fields)
+      : cutoff2_(cutoff * cutoff), fields_(fields), gaussian_(cutoff2_), sums_(sigmas.size() * (fields + 1)) {
+    for (const double sigma : sigmas) precisions_.push_back(1 / (sigma * sigma));
   }
-  void start() {
-    for (Scale& s : scales_) s.sum = s.weight = 0;
-  }
-  void add(double distance, double value) {
-    for (std::size_t i = scales_.size(); i > 0; --i) {
-      Scale& s = scales_[i - 1];
-      if (distance > s.radius) return;  // nor within the smaller ones
-      const double weight = std::exp(s.exponent * distance * distance);
-      s.sum += weight * value;
-      s.weight += weight;
+  void start() { std::fill(sums_.begin(), sums_.end(), 0); }
+  /// To all scales that reach as far.
+  void add(double distance2, const Sample& sample) {
+    for (std::size_t i = precisions_.size(); i > 0; --i) {
+      const double x = distance2 * precisions_[i - 1];
+      if (x > cutoff2_) return;  // nor the smaller ones
+      add(i - 1, gaussian_(x), sample);
     }
   }
-  double average(std::size_t scale) const { return scales_[scale].sum / scales_[scale].weight; }
+  /// To one scale, however far.
+  void add_beyond(std::size_t scale, double distance2, const Sample& sample) {
+    add(scale, std::exp(-0.5 * distance2 * precisions_[scale]), sample);
+  }
+  double average(std::size_t field, std::size_t scale) const {
+    const double* const sums = sums_.data() + scale * (fields_ + 1);
+    return sums[field] / sums[fields_];
+  }
 
  private:
-  struct Scale {
-    double exponent, radius, sum, weight;
-  };
-  std::vector<Scale> scales_;
+  void add(std::size_t scale, double weight, const Sample& sample) {
+    double* const sums = sums_.data() + scale * (fields_ + 1);
+    for (std::size_t f = 0; f < fields_; ++f) sums[f] += weight * sample.weighted[f];
+    sums[fields_] += weight * sample.weight;
+  }
+
+  double cutoff2_;
+  std::size_t fields_;
+  Gaussian gaussian_;
+  std::vector<double> precisions_;  // [#scales], 1 / σ²
+  std::vector<double> sums_;        // [#scales][#fields + 1], the last of the weights
+};
+
+/// The fields at the vertices, side by side and times what each vertex counts for.
+class Samples {
+ public:
+  Samples(const Surface& surface, const Adjacency& adjacency, std::span<const VertexField> fields,
+          VertexWeight weight, const Context& context)
+      : fields_(fields.size()), weights_(adjacency.vertex_count(), 1.0f) {
+    if (weight == VertexWeight::area) {
+      weights_ = VertexField(vertex_areas(surface, adjacency, context));
+      // What has no area still counts where there is nothing else.
+      for (float& w : weights_.values()) w = std::max(w, std::numeric_limits<float>::min());
+    }
+    weighted_.reserve(weights_.size() * fields_);
+    for (std::size_t v = 0; v < weights_.size(); ++v) {
+      for (const VertexField& field : fields)
+        weighted_.push_back(this->weight(v) * static_cast<double>(field.values()[v]));
+    }
+  }
+  Sample operator[](std::size_t v) const {
+    return {weight(v), {weighted_.data() + v * fields_, fields_}};
+  }
+  std::size_t field_count() const { return fields_; }
+
+ private:
+  double weight(std::size_t v) const { return static_cast<double>(weights_.values()[v]); }
+
+  std::size_t fields_;
+  VertexField weights_;
+  std::vector<double> weighted_;  // [#V][#fields]
+};
+
+/// What the local filter window has beyond the sphere: the neighbours outside, and where the edges to them
+/// cross the sphere.
+class WindowRim {
+ public:
+  WindowRim(const Surface& surface, const Adjacency& adjacency, const Samples& samples,
+            std::span<const double> sigmas, double cutoff)
+      : surface_(surface), adjacency_(adjacency), samples_(samples), mean_(samples.field_count()) {
+    for (const double sigma : sigmas) radii_.push_back(cutoff * sigma);
+    double sum = 0, count = 0;
+    for (std::uint32_t v = 0; v < adjacency.vertex_count(); ++v) {
+      for (const std::uint32_t w : adjacency.neighbors(v)) {
+        sum += length(surface.position(w) - surface.position(v));
+        ++count;
+      }
+    }
+    mean_edge_ = sum > 0 ? sum / count : 1;
+  }
+
+  void add(std::uint32_t v, Averager& averager) {
+    const Vec3d p = surface_.position(v);
+    for (const std::uint32_t w : adjacency_.neighbors(v)) {
+      const double d2 = length_squared(surface_.position(w) - p);
+      for (std::size_t scale = 0; scale < radii_.size() && d2 > radii_[scale] * radii_[scale]; ++scale) {
+        averager.add_beyond(scale, d2, samples_[w]);
+        add_crossing(v, w, scale, averager);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::array<double, 4> kFalls{1, 1.2, 1.5, 2};
+
+  void add_crossing(std::uint32_t v, std::uint32_t w, std::size_t scale, Averager& averager) {
+    const Vec3d p = surface_.position(v), q = surface_.position(w);
+    const Vec3d straight = p + (q - p) * (radii_[scale] / length(q - p));
+    std::fill(mean_.begin(), mean_.end(), 0);
+    double sum = 0, weight = 0;
+    Vec3d point;
+    const auto add = [&](std::uint32_t x) {
+      const Vec3d at = surface_.position(x);
+      const double share = std::exp(-kFalls[std::min(scale, kFalls.size() - 1)] *
+                                    length_squared(at - straight) / (mean_edge_ * mean_edge_));
+      const Sample sample = samples_[x];
+      sum += share;
+      weight += share * sample.weight;
+      point = point + at * share;
+      for (std::size_t f = 0; f < mean_.size(); ++f) mean_[f] += share * sample.weighted[f];
+    };
+    add(v);
+    add(w);
+    for (const std::uint32_t c : adjacency_.corners(v)) {
+      const auto& t = surface_.triangles[c / 3];
+      const std::uint32_t a = t[(c + 1) % 3], b = t[(c + 2) % 3];
+      if (a == w) add(b);
+      if (b == w) add(a);
+    }
+    if (!(sum > 0)) return;  // all are many edges away
+    for (double& x : mean_) x /= sum;
+    averager.add_beyond(scale, length_squared(point / sum - p), {weight / sum, mean_});
+  }
+
+  const Surface& surface_;
+  const Adjacency& adjacency_;
+  const Samples& samples_;
+  std::vector<double> radii_;
+  double mean_edge_ = 1;
+  std::vector<double> mean_;  // [#fields], of the crossing at hand
 };
 
 /// Part of σ² that a Gaussian over a surface keeps as its variance when it is cut off at c σ.
@@ -111,54 +251,106 @@ double kept_variance(double c) {
   return 1 - c * c / 2 * edge / (1 - edge);
 }
 
-std::vector<VertexField> diffused(const Surface& surface, const Adjacency& adjacency,
-                                  const VertexField& field, std::span<const double> sigmas, double cutoff,
-                                  const Context& context) {
+std::vector<std::vector<VertexField>> diffused(const Surface& surface, const Adjacency& adjacency,
+                                               std::span<const VertexField> fields,
+                                               std::span<const double> sigmas,
+                                               const Neighborhood& neighborhood, const Context& context) {
   std::vector<double> times;
-  for (const double sigma : sigmas) times.push_back(kept_variance(cutoff) * sigma * sigma / 2);
-  return HeatFlow(surface, adjacency, context).run(field, times, context);
+  for (const double sigma : sigmas) times.push_back(kept_variance(neighborhood.cutoff) * sigma * sigma / 2);
+  const HeatFlow heat(surface, adjacency, context);
+  if (neighborhood.weight == VertexWeight::area) return heat.run(fields, times, context);
+  // Heat counts by area: what is divided by it counts alike.
+  const std::span<const float> areas = heat.areas().values();
+  const std::size_t count = areas.size();
+  double mean = 0, used = 0;
+  for (const float area : areas) {
+    mean += static_cast<double>(area);
+    used += area > 0;
+  }
+  mean /= std::max(used, 1.0);
+  VertexField density(count, 1.0f);
+  for (std::size_t v = 0; v < count; ++v) {
+    if (areas[v] > 0)
+      density.values()[v] = static_cast<float>(
+          std::clamp(mean / static_cast<double>(areas[v]), 1 / kMostDensity, kMostDensity));
+  }
+  std::vector<VertexField> dense;
+  for (const VertexField& field : fields) {
+    dense.push_back(field);
+    for (std::size_t v = 0; v < count; ++v) dense.back().values()[v] *= density.values()[v];
+  }
+  dense.push_back(density);
+  std::vector<std::vector<VertexField>> results = heat.run(dense, times, context);
+  const std::vector<VertexField> densities = std::move(results.back());
+  results.pop_back();
+  for (std::size_t f = 0; f < results.size(); ++f) {
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      for (std::size_t v = 0; v < count; ++v) {
+        float& x = results[f][i].values()[v];
+        x = areas[v] > 0 ? x / densities[i].values()[v] : fields[f].values()[v];
+      }
+    }
+  }
+  return results;
 }
 
 }  // namespace
 
-std::vector<VertexField> gaussian_averages(const Surface& surface, const Adjacency& adjacency,
-                                           const VertexField& field, std::span<const double> sigmas,
-                                           double cutoff, DistanceKind kind, const Context& context) {
+std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, const Adjacency& adjacency,
+                                                        std::span<const VertexField> fields,
+                                                        std::span<const double> sigmas,
+                                                        const Neighborhood& neighborhood,
+                                                        const Context& context) {
+  const double cutoff = neighborhood.cutoff;
   const bool rising = std::is_sorted(sigmas.begin(), sigmas.end());
   if (sigmas.empty() || !rising || !(sigmas.front() > 0) || !(cutoff > 0))
     throw Error(ErrorKind::usage, "widths of averages must rise from above 0");
-  if (kind == DistanceKind::diffusion) return diffused(surface, adjacency, field, sigmas, cutoff, context);
+  if (neighborhood.distance == DistanceKind::diffusion)
+    return diffused(surface, adjacency, fields, sigmas, neighborhood, context);
   const double radius = cutoff * sigmas.back();
-  const std::span<const float> values = field.values();
-  std::vector<VertexField> results(sigmas.size(), VertexField(values.size()));
-  if (values.empty()) return results;
-  const auto value = [&](std::uint32_t v) { return static_cast<double>(values[v]); };
+  const std::size_t count = surface.positions.size();
+  std::vector<std::vector<VertexField>> results(
+      fields.size(), std::vector<VertexField>(sigmas.size(), VertexField(count)));
+  if (count == 0 || fields.empty()) return results;
+  const Samples samples(surface, adjacency, fields, neighborhood.weight, context);
   const auto run = [&](auto&& make_search) {
-    parallel_for(context, values.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
       auto search = make_search();
-      Averager averager(sigmas, cutoff);
+      Averager averager(sigmas, cutoff, fields.size());
       for (std::size_t v = begin; v < end; ++v) {
         const auto vertex = static_cast<std::uint32_t>(v);
         const bool alone = adjacency.corners(vertex).empty();
         averager.start();
         if (!alone) search(vertex, averager);
-        for (std::size_t i = 0; i < results.size(); ++i)
-          results[i].values()[v] = alone ? values[v] : static_cast<float>(averager.average(i));
+        for (std::size_t f = 0; f < fields.size(); ++f) {
+          for (std::size_t i = 0; i < sigmas.size(); ++i)
+            results[f][i].values()[v] =
+                alone ? fields[f].values()[v] : static_cast<float>(averager.average(f, i));
+        }
       }
     });
   };
-  if (kind == DistanceKind::euclidean) {
-    const PointGrid grid(surface, adjacency, radius);
-    run([&] {
-      return [&](std::uint32_t v, Averager& averager) {
-        grid.for_near(v, radius, [&](std::uint32_t w, double d2) { averager.add(std::sqrt(d2), value(w)); });
-      };
-    });
-  } else {
+  if (neighborhood.distance == DistanceKind::geodesic) {
     const GeodesicSurface prepared(surface, adjacency, context);
     run([&] {
       return [&, search = GeodesicSearch(prepared)](std::uint32_t v, Averager& averager) mutable {
-        for (const auto& [w, distance] : search.from(v, radius)) averager.add(distance, value(w));
+        for (const auto& [w, distance] : search.from(v, radius)) averager.add(distance * distance, samples[w]);
+      };
+    });
+    return results;
+  }
+  const PointGrid grid(surface, adjacency, radius);
+  const auto add_sphere = [&](std::uint32_t v, Averager& averager) {
+    grid.for_near(v, radius, [&](std::uint32_t w, double d2) { averager.add(d2, samples[w]); });
+  };
+  if (neighborhood.distance == DistanceKind::euclidean) {
+    run([&] { return add_sphere; });
+  } else {
+    run([&] {
+      return [&, rim = WindowRim(surface, adjacency, samples, sigmas, cutoff)](std::uint32_t v,
+                                                                               Averager& averager) mutable {
+        add_sphere(v, averager);
+        rim.add(v, averager);
       };
     });
   }

@@ -13,21 +13,42 @@ namespace fovea {
 enum class DistanceKind {
   euclidean,  ///< In a straight line through space.
   geodesic,   ///< Over the surface, exactly (geodesic.h).
+  window,     ///< In a straight line, within the local filter window of Yang et al. (2016).
   diffusion,  ///< Over the surface, by heat flow (diffusion.h): for large meshes.
 };
 
-/// Averages of a field under Gaussians of the widths `sigmas` (rising):
-///   G(f, σ)(v) = Σ_x f(x) exp(−d(v, x)² / 2σ²) / Σ_x exp(−d(v, x)² / 2σ²)
-/// over the vertices x with d(v, x) ≤ `cutoff` · σ (Lee et al. 2005 have a cutoff of 2, Munaretti 2007 of 1).
+/// What a vertex counts for in an average.
+enum class VertexWeight {
+  one,   ///< Each alike, as published: what is finely meshed counts more.
+  area,  ///< Its area: averages over the surface, whatever its mesh.
+};
+
+/// What surrounds a vertex, and how much of it counts.
+struct Neighborhood {
+  DistanceKind distance = DistanceKind::diffusion;
+  double cutoff = 2;  ///< Gaussians end at this many widths; by `diffusion` one flows as far in the mean square.
+  VertexWeight weight = VertexWeight::area;
+};
+
+/// Averages of fields under Gaussians of the widths `sigmas` (rising):
+///   G(f, σ)(v) = Σ_x f(x) w(x) exp(−d(v, x)² / 2σ²) / Σ_x w(x) exp(−d(v, x)² / 2σ²)
+/// over the vertices x with d(v, x) ≤ cutoff · σ (Lee et al. 2005 have a cutoff of 2, Munaretti 2007 of 1).
 /// Vertices without triangles keep their value and count nowhere.
 ///
-/// By `diffusion` vertices count by their area rather than each alike, and the heat flows for the time that
-/// gives a Gaussian of the same second moment as the one that is cut off.
+/// In the `window` of Yang et al. the neighbours along edges count at any distance, and so do the points where
+/// edges leave the sphere: estimated, and given values, by the mean of the edge's ends and the two corners
+/// opposite, under weights exp(−k d²) with k = 1, 1.2, 1.5, 2 from the first width to the fourth and on, and d
+/// the distance to the straight crossing in mean edge lengths (the paper does not say its unit).
 ///
-/// [#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: by `euclidean` and `geodesic` what
-/// is within the largest radius of every vertex; by `diffusion` a few dozen products with a sparse matrix.
-std::vector<VertexField> gaussian_averages(const Surface& surface, const Adjacency& adjacency,
-                                           const VertexField& field, std::span<const double> sigmas,
-                                           double cutoff, DistanceKind kind, const Context& context);
+/// By `diffusion` with each vertex alike, the heat of f / area over that of 1 / area, where no area counts as
+/// less than 1 / 100 or more than 100 times the mean.
+///
+/// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what is
+/// within the largest radius of every vertex; by `diffusion` some hundred products with a sparse matrix.
+std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, const Adjacency& adjacency,
+                                                        std::span<const VertexField> fields,
+                                                        std::span<const double> sigmas,
+                                                        const Neighborhood& neighborhood,
+                                                        const Context& context);
 
 }  // namespace fovea
