@@ -128,4 +128,16 @@ VertexField lee_saliency(const VertexField& curvature, const Surface& surface, d
   return result;
 }
 
+VertexField multi_pose_saliency(const std::vector<VertexField>& poses) {
+  VertexField result(poses[0].size());
+  for (std::uint32_t v = 0; v < result.size(); ++v) {
+    double base = poses[0].values()[v];
+    for (const VertexField& pose : poses) base = std::min(base, static_cast<double>(pose.values()[v]));
+    double differences = 0;
+    for (const VertexField& pose : poses) differences += static_cast<double>(pose.values()[v]) - base;
+    result.values()[v] = static_cast<float>(base + differences);
+  }
+  return result;
+}
+
 }  // namespace fovea::test

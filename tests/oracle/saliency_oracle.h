@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "fovea/model/field.h"
 #include "fovea/surface/surface.h"
@@ -24,5 +25,8 @@ VertexField promoted(const VertexField& field, const Surface& surface);
 /// Mesh saliency of Lee et al. (2005) from mean curvature, with any distance. O(#V²).
 VertexField lee_saliency(const VertexField& curvature, const Surface& surface, double unit, double cutoff,
                          const Distance& distance);
+
+/// S_b + Σ_j (S_j − S_b) at each vertex, S_b the least over the poses (Munaretti 2007, equation 4.1).
+VertexField multi_pose_saliency(const std::vector<VertexField>& poses);
 
 }  // namespace fovea::test

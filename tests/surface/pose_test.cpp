@@ -145,6 +145,28 @@ TEST(Pose, InstancesOfANodeAreAllShown) {
   EXPECT_EQ(transform_point(shown[1].world, {}), (Vec3d{2, 5, 0}));
 }
 
+TEST(Pose, PointsAreWhereTheSurfaceHasThem) {
+  Model model = test::skinned_model(8);
+  TriMesh& mesh = model.meshes[0].surface;
+  mesh.position_morphs = {std::vector<Vec3f>(mesh.vertex_count(), Vec3f{0, 0.5f, 1})};
+  model.meshes[0].morph_weights = {0.5};
+  const Pose pose = pose_at(model, 0, 0.7);
+  const Instance instance = instances(model, pose)[0];
+  const std::vector<CornerId> corners = first_corners(mesh);
+  ASSERT_EQ(corners.size(), mesh.vertex_count());
+  for (std::size_t v = 0; v < corners.size(); ++v) EXPECT_EQ(mesh.vertex(corners[v]), VertexId{v});
+  EXPECT_EQ(posed_points(model, pose, instance, corners), posed_surface(model, pose, instance).positions);
+}
+
+TEST(Pose, VerticesWithoutTrianglesGoWithTheInstance) {
+  Model model = test::model_of(test::grid(1, 1));
+  model.meshes[0].surface.positions.emplace_back(1.0f, 2.0f, 3.0f);
+  model.nodes[0].translation = {0, 5, 0};
+  EXPECT_FALSE(first_corners(model.meshes[0].surface)[4].valid());
+  const Pose pose = rest_pose(model);
+  EXPECT_EQ(posed_surface(model, pose, instances(model, pose)[0]).positions[4], (Vec3f{1, 7, 3}));
+}
+
 TEST(Pose, UnknownAnimationsAreRefused) {
   EXPECT_THROW(pose_at(test::model_of(test::grid(1, 1)), 0, 0), Error);
 }

@@ -176,15 +176,41 @@ std::vector<Vec3f> morphed_directions(const AttributeLayer* layer, const std::ve
   return result;
 }
 
-std::vector<Vec3f> morphed_positions(const TriMesh& mesh, const std::vector<double>& morph_weights) {
-  std::vector<Vec3f> result = mesh.positions;
-  for (std::size_t t = 0; t < std::min(mesh.target_count(), morph_weights.size()); ++t) {
-    if (morph_weights[t] == 0 || mesh.position_morphs[t].empty()) continue;
-    const auto weight = static_cast<float>(morph_weights[t]);
-    for (std::size_t v = 0; v < result.size(); ++v) result[v] += mesh.position_morphs[t][v] * weight;
+/// How an instance deforms its mesh: morph targets, then joints or its transform.
+class Deformation {
+ public:
+  Deformation(const Model& model, const Pose& pose, const Instance& instance)
+      : mesh_(model.meshes[instance.mesh].surface), world_(instance.world) {
+    const std::vector<double>& weights = pose.morph_weights[instance.node];
+    for (std::size_t t = 0; t < std::min(mesh_.target_count(), weights.size()); ++t) {
+      if (weights[t] == 0 || mesh_.position_morphs[t].empty()) continue;
+      targets_.push_back({static_cast<float>(weights[t]), mesh_.position_morphs[t].data()});
+    }
+    const int skin = model.nodes[instance.node].skin;
+    if (skin >= 0) skinning_ = Skinning(pose, model.skins[static_cast<std::size_t>(skin)], mesh_);
   }
-  return result;
-}
+
+  /// To world space at a corner; where there is none, as for a vertex without triangles, the first joint's.
+  Mat4 matrix(CornerId corner) const {
+    if (skinning_.empty()) return world_;
+    return corner.valid() ? skinning_.at(corner) : skinning_.first_joint();
+  }
+  Vec3f position(VertexId v, CornerId corner) const {
+    Vec3f p = mesh_.positions[v.index()];
+    for (const Target& target : targets_) p += target.positions[v.index()] * target.weight;
+    return Vec3f(transform_point(matrix(corner), Vec3d(p)));
+  }
+
+ private:
+  struct Target {
+    float weight;
+    const Vec3f* positions;  ///< What it adds, [#V].
+  };
+  const TriMesh& mesh_;
+  const Mat4& world_;
+  std::vector<Target> targets_;
+  Skinning skinning_;
+};
 
 /// Calls f(value, corner) once for each value of a layer that a corner uses.
 template <class F>
@@ -292,37 +318,46 @@ std::vector<Instance> instances(const Model& model, const Pose& pose) {
   return result;
 }
 
+std::vector<CornerId> first_corners(const TriMesh& mesh) {
+  std::vector<CornerId> corners(mesh.vertex_count());
+  for (std::size_t c = 3 * mesh.face_count(); c-- > 0;)
+    corners[mesh.vertex(CornerId{c}).index()] = CornerId{c};
+  return corners;
+}
+
+std::vector<Vec3f> posed_points(const Model& model, const Pose& pose, const Instance& instance,
+                                std::span<const CornerId> corners) {
+  const TriMesh& mesh = model.meshes[instance.mesh].surface;
+  const Deformation deformation(model, pose, instance);
+  std::vector<Vec3f> points;
+  points.reserve(corners.size());
+  for (const CornerId c : corners) points.push_back(deformation.position(mesh.vertex(c), c));
+  return points;
+}
+
 PosedSurface posed_surface(const Model& model, const Pose& pose, const Instance& instance) {
   const TriMesh& mesh = model.meshes[instance.mesh].surface;
   const std::vector<double>& weights = pose.morph_weights[instance.node];
   const AttributeLayer *normal = mesh.find(Semantic::normal), *tangent = mesh.find(Semantic::tangent);
+  const Deformation deformation(model, pose, instance);
   PosedSurface surface;
-  surface.positions = morphed_positions(mesh, weights);
+  surface.mirrored = determinant3(deformation.matrix({})) < 0;
+  surface.positions.resize(mesh.vertex_count());
+  const std::vector<CornerId> corners = first_corners(mesh);
+  for (std::size_t v = 0; v < corners.size(); ++v)
+    surface.positions[v] = deformation.position(VertexId{v}, corners[v]);
+
   surface.normals = morphed_directions(normal, weights);
-  surface.tangents = morphed_directions(tangent, weights);
-
-  const int skin = model.nodes[instance.node].skin;
-  const Skinning skinning =
-      skin < 0 ? Skinning() : Skinning(pose, model.skins[static_cast<std::size_t>(skin)], mesh);
-  const auto matrix_at = [&](CornerId c) { return skinning.empty() ? instance.world : skinning.at(c); };
-  surface.mirrored = determinant3(skinning.empty() ? instance.world : skinning.first_joint()) < 0;
-
-  std::vector<bool> placed(mesh.vertex_count());
-  for (std::size_t c = 0; c < 3 * mesh.face_count(); ++c) {
-    const std::size_t v = mesh.vertex(CornerId{c}).index();
-    if (placed[v]) continue;
-    placed[v] = true;
-    surface.positions[v] = Vec3f(transform_point(matrix_at(CornerId{c}), Vec3d(surface.positions[v])));
-  }
   if (normal != nullptr) {
     for_values(*normal, [&](std::size_t value, CornerId c) {
-      surface.normals[value] = transform_normal(matrix_at(c), surface.normals[value]);
+      surface.normals[value] = transform_normal(deformation.matrix(c), surface.normals[value]);
     });
   }
+  surface.tangents = morphed_directions(tangent, weights);
   if (tangent != nullptr) {
     for_values(*tangent, [&](std::size_t value, CornerId c) {
       Vec3f& t = surface.tangents[value];
-      t = Vec3f(normalized(transform_direction(matrix_at(c), Vec3d(t))));
+      t = Vec3f(normalized(transform_direction(deformation.matrix(c), Vec3d(t))));
     });
   }
   return surface;

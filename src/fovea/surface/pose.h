@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fovea/base/options.h"
@@ -58,5 +59,13 @@ struct PosedSurface {
 
 /// Applies morph targets, then joints or the instance's transform. O(#V · (#targets + #joints per vertex)).
 PosedSurface posed_surface(const Model& model, const Pose& pose, const Instance& instance);
+
+/// The first corner at each vertex, whose joints place it; none where there are no triangles. [#V]. O(#F).
+std::vector<CornerId> first_corners(const TriMesh& mesh);
+
+/// Where an instance shows the vertices at some corners, in world space: of `first_corners` these are the
+/// positions of `posed_surface`. [#corners].
+std::vector<Vec3f> posed_points(const Model& model, const Pose& pose, const Instance& instance,
+                                std::span<const CornerId> corners);
 
 }  // namespace fovea
