@@ -10,15 +10,13 @@
 #include "fovea/io/image_file.h"
 #include "fovea/io/read.h"
 #include "report.h"
+#include "sheet.h"
 #include "text.h"
 #include "verb.h"
 
 namespace fovea::cli {
 
 namespace {
-
-/// Along a side of a sheet: what common viewers still open.
-constexpr std::int64_t kMostPixels = 1 << 16;
 
 class Render : public Verb {
  public:
@@ -67,7 +65,7 @@ class Render : public Verb {
     const RenderScene scene =
         session.phase("prepare", [&] { return make_render_scene(model, pose, session.context); });
     const std::vector<View> views = chosen_views(model, pose, scene);
-    Image8 sheet = empty_sheet(views.size());
+    Image8 sheet = empty_sheet(views.size(), columns_, options_);
     const std::vector<Picture> pictures =
         session.phase("draw", [&] { return render_views(scene, views, options_, session.context, fields); });
     arrange(pictures, sheet);
@@ -129,34 +127,6 @@ class Render : public Verb {
       throw Error(ErrorKind::usage, fmt::format("there are only {} views", views.size()), "--view");
     }
     return {views[static_cast<std::size_t>(view_ - 1)]};
-  }
-
-  /// Room for a sheet of views, in the background's colour.
-  Image8 empty_sheet(std::size_t views) const {
-    const auto count = static_cast<std::int64_t>(views);
-    const auto square = static_cast<std::int64_t>(std::ceil(std::sqrt(1.5 * static_cast<double>(count))));
-    const std::int64_t columns = std::clamp(columns_ > 0 ? columns_ : square, std::int64_t{1}, count);
-    const std::int64_t width = columns * options_.width,
-                       height = (count + columns - 1) / columns * options_.height;
-    if (std::max(width, height) > kMostPixels) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("the sheet would have more than {} pixels along a side", kMostPixels), {},
-                  "make the views smaller or fewer");
-    }
-    Image8 sheet(static_cast<int>(width), static_cast<int>(height), 3, ColorEncoding::srgb);
-    for (std::size_t i = 0; i < sheet.pixels.size(); ++i) sheet.pixels[i] = options_.background[i % 3];
-    return sheet;
-  }
-
-  static void arrange(const std::vector<Picture>& pictures, Image8& sheet) {
-    for (std::size_t k = 0; k < pictures.size(); ++k) {
-      const Image8& picture = pictures[k].color;
-      const int columns = sheet.width / picture.width, at = static_cast<int>(k);
-      for (int y = 0; y < picture.height; ++y) {
-        std::copy_n(picture.at(0, y), 3 * picture.width,
-                    sheet.at(at % columns * picture.width, at / columns * picture.height + y));
-      }
-    }
   }
 
   void tell(Session& session, const RenderScene& scene, const std::vector<View>& views,

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -215,6 +216,11 @@ class SourceOrder {
   std::size_t sources_ = 0, vertices_ = 0;
 };
 
+bool is_npy_name(const std::filesystem::path& path) { return path.extension() == ".npy"; }
+bool is_text_name(const std::filesystem::path& path) {
+  return path.extension() == ".csv" || path.extension() == ".txt";
+}
+
 std::string name_of(const AttributeLayer& layer) {
   if (layer.semantic == Semantic::custom) return layer.name;
   return layer.semantic == Semantic::color ? fmt::format("COLOR_{}", layer.set) : "";
@@ -287,6 +293,38 @@ std::vector<std::byte> encode_npy(std::span<const float> values) {
 void write_npy(const std::filesystem::path& path, std::span<const float> values, bool force) {
   const OutputFile file{"", encode_npy(values)};
   write_files(path, {&file, 1}, force);
+}
+
+void check_field_output(const std::filesystem::path& path, bool force) {
+  if (!is_npy_name(path) && !is_text_name(path)) {
+    throw Error(ErrorKind::usage, fmt::format("fields are not written as \"{}\"", path.extension().string()),
+                path.string(), "name the output .npy, .csv or .txt");
+  }
+  check_place(path, force);
+}
+
+void write_field(const std::filesystem::path& path, std::span<const float> values, const std::string& name,
+                 bool force) {
+  check_field_output(path, force);
+  if (is_npy_name(path)) return write_npy(path, values, force);
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "{}\n", name);
+  // The shortest digits that read back as the same float.
+  for (const float x : values) fmt::format_to(std::back_inserter(text), "{}\n", x);
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(text.data(), text.size()));
+  const OutputFile file{"", {bytes.begin(), bytes.end()}};
+  write_files(path, {&file, 1}, force);
+}
+
+std::vector<float> field_in_source_order(const Model& model, std::span<const VertexField> fields) {
+  std::vector<float> values;
+  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+    const TriMesh& mesh = model.meshes[m].surface;
+    const std::span<const float> own = fields[m].values();
+    if (mesh.source_vertex.empty()) values.insert(values.end(), own.begin(), own.end());
+    for (const VertexId v : mesh.source_vertex) values.push_back(v.valid() ? own[v.index()] : 0.0f);
+  }
+  return values;
 }
 
 std::vector<VertexField> field_from_source_order(const Model& model, std::span<const float> values) {

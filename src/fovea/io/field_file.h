@@ -29,6 +29,18 @@ std::vector<float> read_npy(const std::filesystem::path& path,
 std::vector<std::byte> encode_npy(std::span<const float> values);
 void write_npy(const std::filesystem::path& path, std::span<const float> values, bool force);
 
+/// Writes a list of numbers as the extension says: .npy, or .csv and .txt with a number in a line below the
+/// heading `name`; safely, as io/write.h does. `read_field` reads the same numbers back.
+void write_field(const std::filesystem::path& path, std::span<const float> values, const std::string& name,
+                 bool force);
+/// Throws what `write_field` would throw about its output alone: Error(usage) for another extension and for
+/// an existing file without `force`, Error(output) for a folder that is missing.
+void check_field_output(const std::filesystem::path& path, bool force);
+
+/// The values of all source vertices in the order of the source file: what `field_from_source_order` reads.
+/// Source vertices that no triangle uses get 0.
+std::vector<float> field_in_source_order(const Model& model, std::span<const VertexField> fields);
+
 /// One field per mesh from one list for the whole model, in the order of the source file: the
 /// concatenation of TriMesh::source_vertex over the meshes. Where several source vertices were
 /// welded into one, the largest value wins. A list with as many values as the model has welded

@@ -175,6 +175,18 @@ RenderScene make_render_scene(const Model& model, const Pose& pose, Context& con
   return scene;
 }
 
+RenderScene make_render_scene(const TriMesh& mesh) {
+  RenderScene scene;
+  scene.materials.emplace_back().double_sided = true;
+  SceneMesh& shown = scene.meshes.emplace_back();
+  shown.mesh = &mesh;
+  shown.surface.positions = mesh.positions;
+  shown.part_material.assign(mesh.parts.size(), 0);
+  scene.triangle_count = mesh.face_count();
+  scene.sphere = sphere_around(scene.meshes);
+  return scene;
+}
+
 std::vector<View> camera_views(const Model& model, const Pose& pose) {
   std::vector<View> views;
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {

@@ -67,6 +67,10 @@ struct RenderScene {
 /// count as absent and are reported ("image-not-shown"). Throws Error(limit) beyond 2³² − 1 triangles.
 RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context);
 
+/// A mesh alone as it lies in its own space, grey, both sides of its triangles shown. Refers to the mesh,
+/// which must outlive it.
+RenderScene make_render_scene(const TriMesh& mesh);
+
 /// What the model's own cameras see, node by node; their aspect ratio gives way to the picture's.
 std::vector<View> camera_views(const Model& model, const Pose& pose);
 

@@ -22,8 +22,8 @@ class HeatFlow {
   HeatFlow(const Surface& surface, const Adjacency& adjacency, const Context& context);
 
   /// Each field after each of `times`, which rise from 0 or more. The exponential of the Laplacian by its
-  /// Chebyshev series, to 10⁻⁶ of the field's range: about 5 · √(last time · fastest rate / 2) products with a
-  /// sparse matrix, which four fields share. [#fields][#times]. Parallel; the same bits for any number of
+  /// Chebyshev series, to 10⁻⁶ of the field's range: about 5 · √(last time · fastest rate / 2) products with
+  /// a sparse matrix, which four fields share. [#fields][#times]. Parallel; the same bits for any number of
   /// threads.
   std::vector<std::vector<VertexField>> run(std::span<const VertexField> fields,
                                             std::span<const double> times, const Context& context) const;

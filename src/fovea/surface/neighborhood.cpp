@@ -103,7 +103,7 @@ class Gaussian {
 
 /// The fields at a vertex or between them.
 struct Sample {
-  double weight = 0;                   ///< What it counts for.
+  double weight = 0;                 ///< What it counts for.
   std::span<const double> weighted;  ///< [#fields], times that.
 };
 
@@ -163,9 +163,7 @@ class Samples {
         weighted_.push_back(this->weight(v) * static_cast<double>(field.values()[v]));
     }
   }
-  Sample operator[](std::size_t v) const {
-    return {weight(v), {weighted_.data() + v * fields_, fields_}};
-  }
+  Sample operator[](std::size_t v) const { return {weight(v), {weighted_.data() + v * fields_, fields_}}; }
   std::size_t field_count() const { return fields_; }
 
  private:
@@ -309,8 +307,8 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
     return diffused(surface, adjacency, fields, sigmas, neighborhood, context);
   const double radius = cutoff * sigmas.back();
   const std::size_t count = surface.positions.size();
-  std::vector<std::vector<VertexField>> results(
-      fields.size(), std::vector<VertexField>(sigmas.size(), VertexField(count)));
+  std::vector<std::vector<VertexField>> results(fields.size(),
+                                                std::vector<VertexField>(sigmas.size(), VertexField(count)));
   if (count == 0 || fields.empty()) return results;
   const Samples samples(surface, adjacency, fields, neighborhood.weight, context);
   const auto run = [&](auto&& make_search) {
@@ -334,7 +332,8 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
     const GeodesicSurface prepared(surface, adjacency, context);
     run([&] {
       return [&, search = GeodesicSearch(prepared)](std::uint32_t v, Averager& averager) mutable {
-        for (const auto& [w, distance] : search.from(v, radius)) averager.add(distance * distance, samples[w]);
+        for (const auto& [w, distance] : search.from(v, radius))
+          averager.add(distance * distance, samples[w]);
       };
     });
     return results;

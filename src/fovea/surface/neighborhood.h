@@ -26,7 +26,8 @@ enum class VertexWeight {
 /// What surrounds a vertex, and how much of it counts.
 struct Neighborhood {
   DistanceKind distance = DistanceKind::diffusion;
-  double cutoff = 2;  ///< Gaussians end at this many widths; by `diffusion` one flows as far in the mean square.
+  double cutoff =
+      2;  ///< Gaussians end at this many widths; by `diffusion` one flows as far in the mean square.
   VertexWeight weight = VertexWeight::area;
 };
 
@@ -35,16 +36,16 @@ struct Neighborhood {
 /// over the vertices x with d(v, x) ≤ cutoff · σ (Lee et al. 2005 have a cutoff of 2, Munaretti 2007 of 1).
 /// Vertices without triangles keep their value and count nowhere.
 ///
-/// In the `window` of Yang et al. the neighbours along edges count at any distance, and so do the points where
-/// edges leave the sphere: estimated, and given values, by the mean of the edge's ends and the two corners
-/// opposite, under weights exp(−k d²) with k = 1, 1.2, 1.5, 2 from the first width to the fourth and on, and d
-/// the distance to the straight crossing in mean edge lengths (the paper does not say its unit).
+/// In the `window` of Yang et al. the neighbours along edges count at any distance, and so do the points
+/// where edges leave the sphere: estimated, and given values, by the mean of the edge's ends and the two
+/// corners opposite, under weights exp(−k d²) with k = 1, 1.2, 1.5, 2 from the first width to the fourth and
+/// on, and d the distance to the straight crossing in mean edge lengths (the paper does not say its unit).
 ///
 /// By `diffusion` with each vertex alike, the heat of f / area over that of 1 / area, where no area counts as
 /// less than 1 / 100 or more than 100 times the mean.
 ///
-/// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what is
-/// within the largest radius of every vertex; by `diffusion` some hundred products with a sparse matrix.
+/// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what
+/// is within the largest radius of every vertex; by `diffusion` some hundred products with a sparse matrix.
 std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, const Adjacency& adjacency,
                                                         std::span<const VertexField> fields,
                                                         std::span<const double> sigmas,

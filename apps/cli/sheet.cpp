@@ -1,0 +1,45 @@
+#include "sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/error.h"
+
+namespace fovea::cli {
+
+namespace {
+
+/// Along a side of a sheet: what common viewers still open.
+constexpr std::int64_t kMostPixels = 1 << 16;
+
+}  // namespace
+
+Image8 empty_sheet(std::size_t views, std::int64_t columns, const RenderOptions& options) {
+  const auto count = static_cast<std::int64_t>(views);
+  const auto square = static_cast<std::int64_t>(std::ceil(std::sqrt(1.5 * static_cast<double>(count))));
+  const std::int64_t across = std::clamp(columns > 0 ? columns : square, std::int64_t{1}, count);
+  const std::int64_t width = across * options.width, height = (count + across - 1) / across * options.height;
+  if (std::max(width, height) > kMostPixels) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the sheet would have more than {} pixels along a side", kMostPixels), {},
+                "make the views smaller or fewer");
+  }
+  Image8 sheet(static_cast<int>(width), static_cast<int>(height), 3, ColorEncoding::srgb);
+  for (std::size_t i = 0; i < sheet.pixels.size(); ++i) sheet.pixels[i] = options.background[i % 3];
+  return sheet;
+}
+
+void arrange(std::span<const Picture> pictures, Image8& sheet) {
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    const Image8& picture = pictures[k].color;
+    const int columns = sheet.width / picture.width, at = static_cast<int>(k);
+    for (int y = 0; y < picture.height; ++y) {
+      std::copy_n(picture.at(0, y), 3 * picture.width,
+                  sheet.at(at % columns * picture.width, at / columns * picture.height + y));
+    }
+  }
+}
+
+}  // namespace fovea::cli

@@ -1,0 +1,91 @@
+#include "fovea/render/heat_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "fovea/base/error.h"
+#include "fovea/base/srgb.h"
+#include "fovea/render/render.h"
+
+namespace fovea {
+
+namespace {
+
+void check_sizes(const Model& model, const std::vector<VertexField>& fields) {
+  bool fit = fields.size() == model.meshes.size();
+  for (std::size_t m = 0; fit && m < fields.size(); ++m)
+    fit = fields[m].size() == model.meshes[m].surface.vertex_count();
+  if (!fit) throw Error(ErrorKind::usage, "the fields are not of this model's meshes");
+}
+
+/// A layer with one value for each vertex.
+AttributeLayer vertex_layer(const TriMesh& mesh, Semantic semantic, int width) {
+  AttributeLayer layer;
+  layer.semantic = semantic;
+  layer.width = width;
+  layer.values.resize(mesh.vertex_count() * static_cast<std::size_t>(width));
+  layer.corner_value.reserve(3 * mesh.face_count());
+  for (const auto& triangle : mesh.triangles) {
+    for (const VertexId v : triangle) layer.corner_value.push_back(ValueId{v.value});
+  }
+  return layer;
+}
+
+AttributeLayer heat_layer(const TriMesh& mesh, const VertexField& field) {
+  AttributeLayer layer = vertex_layer(mesh, Semantic::color, 3);
+  layer.storage = {ComponentType::u16, true};
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    const std::array<std::uint8_t, 3> color = heat_color(field.values()[v]);
+    for (std::size_t c = 0; c < 3; ++c) layer.values[3 * v + c] = to_light(color[c]);
+  }
+  return layer;
+}
+
+}  // namespace
+
+Model heat_map(const Model& model, const std::vector<VertexField>& fields) {
+  check_sizes(model, fields);
+  Model result = model;
+  Material material;
+  material.name = "heat";
+  material.metallic_factor = 0;
+  material.double_sided = std::any_of(model.materials.begin(), model.materials.end(),
+                                      [](const Material& m) { return m.double_sided; });
+  result.materials = {material};
+  result.textures.clear();
+  result.samplers.clear();
+  result.images.clear();
+  for (std::size_t m = 0; m < result.meshes.size(); ++m) {
+    TriMesh& mesh = result.meshes[m].surface;
+    for (Part& part : mesh.parts) {
+      part.material = part.raw ? -1 : 0;
+      part.json.clear();
+    }
+    std::erase_if(mesh.layers, [](const AttributeLayer& layer) {
+      return layer.semantic != Semantic::normal && layer.semantic != Semantic::joints &&
+             layer.semantic != Semantic::weights;
+    });
+    mesh.layers.push_back(heat_layer(mesh, fields[m]));
+  }
+  return result;
+}
+
+Model with_attribute(const Model& model, const std::vector<VertexField>& fields, const std::string& name) {
+  check_sizes(model, fields);
+  Model result = model;
+  for (std::size_t m = 0; m < result.meshes.size(); ++m) {
+    TriMesh& mesh = result.meshes[m].surface;
+    std::erase_if(mesh.layers, [&](const AttributeLayer& layer) {
+      return layer.semantic == Semantic::custom && layer.name == name;
+    });
+    AttributeLayer layer = vertex_layer(mesh, Semantic::custom, 1);
+    layer.name = name;
+    layer.values.assign(fields[m].values().begin(), fields[m].values().end());
+    mesh.layers.push_back(std::move(layer));
+  }
+  return result;
+}
+
+}  // namespace fovea
