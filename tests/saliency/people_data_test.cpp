@@ -7,6 +7,7 @@
 
 #include "fovea/io/field_file.h"
 #include "fovea/io/read.h"
+#include "fovea/surface/scene_surface.h"
 #include "support/meshes.h"
 #include "support/reading.h"
 
@@ -191,25 +192,10 @@ TEST(PeopleData, BadPointsAreRefused) {
       .refused(ErrorKind::usage, "a.txt", "none of 2 points is at a vertex");
 }
 
-TEST(PeopleData, TheWholeSurfaceIsWhatTheSceneShows) {
-  Model model = test::model_of({test::tetrahedron(), test::grid(1, 1)});
-  model.nodes[1].translation = {0, 0, 5};
-  model.nodes.push_back(model.nodes[1]);  // shown a second time, elsewhere
-  model.nodes[2].translation = {0, 0, 9};
-  model.scenes[0].nodes.push_back(2);
-  const Surface whole = whole_surface(model);
-  ASSERT_EQ(whole.positions.size(), 8u);
-  ASSERT_EQ(whole.triangles.size(), 6u);
-  for (std::size_t v = 0; v < 4; ++v) {
-    EXPECT_EQ(whole.positions[v], model.meshes[0].surface.positions[v]);
-    EXPECT_EQ(whole.positions[4 + v], (model.meshes[1].surface.positions[v] + Vec3f{0, 0, 5}));
-  }
-  for (std::size_t f = 4; f < 6; ++f) EXPECT_GE(whole.triangles[f][0], 4u);
-}
-
 TEST(PeopleData, PredictionsAreHeldAgainstVerticesOrFaces) {
   const Pair pair(kOff, "0\n1\n2\n5\n"), faces(kOff, "3\n1\n");
-  const Surface surface = whole_surface(pair.model());
+  const Model read = pair.model();
+  const Surface surface = scene_surface(read, rest_pose(read)).surface;
   const VertexField predicted(Values{3, 0, 3, 9});
   const Agreement by_vertex = agreement(predicted, pair.read(), surface, {}),
                   by_vertex_expected = agreement(Values{3, 0, 3, 9}, Values{0, 1, 2, 5}, Values{4, 1, 4, 3});

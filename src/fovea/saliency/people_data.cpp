@@ -16,7 +16,7 @@
 #include "fovea/io/read.h"
 #include "fovea/io/text_scan.h"
 #include "fovea/surface/curvature.h"
-#include "fovea/surface/pose.h"
+#include "fovea/surface/scene_surface.h"
 
 namespace fovea {
 
@@ -359,28 +359,10 @@ std::vector<PeopleFiles> find_people_files(const fs::path& folder) {
   return found;
 }
 
-Surface whole_surface(const Model& model) {
-  const Pose pose = rest_pose(model);
-  std::vector<std::vector<Vec3f>> shown(model.meshes.size());
-  for (const Instance& instance : instances(model, pose)) {
-    if (shown[instance.mesh].empty()) shown[instance.mesh] = posed_surface(model, pose, instance).positions;
-  }
-  Surface whole;
-  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
-    const TriMesh& mesh = model.meshes[m].surface;
-    const auto first = static_cast<std::uint32_t>(whole.positions.size());
-    const std::vector<Vec3f>& positions = shown[m].empty() ? mesh.positions : shown[m];
-    whole.positions.insert(whole.positions.end(), positions.begin(), positions.end());
-    for (const auto& t : mesh.triangles)
-      whole.triangles.push_back({first + t[0].value, first + t[1].value, first + t[2].value});
-  }
-  return whole;
-}
-
 PeopleMap read_people_map(const PeopleFiles& files, const Model& model) {
   const std::string place = files.map.string();
   const auto points = parse_points(read_file(files.map, kMaxBytes), place);
-  if (points) return map_of_points(*points, whole_surface(model), place);
+  if (points) return map_of_points(*points, scene_surface(model, rest_pose(model)).surface, place);
   std::vector<float> values = read_field(files.map);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i]) || values[i] < 0)

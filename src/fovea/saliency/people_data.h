@@ -28,15 +28,11 @@ struct PeopleFiles {
 /// models a map.
 std::vector<PeopleFiles> find_people_files(const std::filesystem::path& folder);
 
-/// All meshes of a model as one surface at rest, mesh after mesh: each where the scene shows it first, in its
-/// own space if it does not. O(#V + #F).
-Surface whole_surface(const Model& model);
-
 /// Where people looked on a model.
 struct PeopleMap {
   enum class Over { vertices, faces };
   Over over = Over::vertices;
-  std::vector<float> values;  ///< [#V] or [#F] of `whole_surface`.
+  std::vector<float> values;  ///< [#V] or [#F] of `scene_surface` at rest.
   std::size_t points = 0;     ///< Of a list of points, else 0 ...
   std::size_t strays = 0;     ///< ... and how many of these lie at no vertex.
 };
@@ -53,8 +49,8 @@ struct PeopleMap {
 /// whose order is not known, and what `read_field` throws. The place is the map's file.
 PeopleMap read_people_map(const PeopleFiles& files, const Model& model);
 
-/// Compares a prediction, [#V] of `surface` (the whole one), with a map by vertices and their areas, or by
-/// faces with the mean of their corners.
+/// Compares a prediction, [#V] of `surface` (that of the scene), with a map by vertices and their areas, or
+/// by faces with the mean of their corners.
 Agreement agreement(const VertexField& predicted, const PeopleMap& observed, const Surface& surface,
                     const Context& context);
 
