@@ -93,6 +93,30 @@ TEST(Neighborhood, ByAreaEqualsTheFormula) {
   }
 }
 
+TEST(Neighborhood, GivenWeightsTakeTheirPlace) {
+  const Surface surface = uneven_sheet(20);
+  const VertexField field = noise(surface.positions.size());
+  const Context context;
+  const Adjacency adjacency(surface, context);
+  const double sigmas[] = {0.05, 0.1};
+  for (const DistanceKind kind : kKinds) {
+    const auto average = [&](VertexWeight weight, const VertexField& weights) {
+      return gaussian_averages(surface, adjacency, {&field, 1}, sigmas, {kind, 2, weight}, context, weights);
+    };
+    const VertexField ones(field.size(), 1.0f);
+    EXPECT_EQ(average(VertexWeight::area, ones), average(VertexWeight::one, {}));
+    if (kind == DistanceKind::diffusion) continue;  // it has its own areas where vertices are this uneven
+    // Thrice the area is the area, but for rounding.
+    VertexField areas = vertex_areas(surface, adjacency, context);
+    for (float& a : areas.values()) a *= 3;
+    const auto by_area = average(VertexWeight::area, {}), given = average(VertexWeight::one, areas);
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t v = 0; v < field.size(); ++v)
+        EXPECT_NEAR(given[0][i].values()[v], by_area[0][i].values()[v], 1e-5);
+    }
+  }
+}
+
 TEST(Neighborhood, WindowEqualsTheWords) {
   // Edges of 0.01 to 0.1: the spheres of 0.04 leave out neighbours on one side and hold dozens on the other.
   const Surface surface = uneven_sheet(20);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
@@ -149,18 +150,14 @@ class Averager {
 /// The fields at the vertices, side by side and times what each vertex counts for.
 class Samples {
  public:
-  Samples(const Surface& surface, const Adjacency& adjacency, std::span<const VertexField> fields,
-          VertexWeight weight, const Context& context)
-      : fields_(fields.size()), weights_(adjacency.vertex_count(), 1.0f) {
-    if (weight == VertexWeight::area) {
-      weights_ = VertexField(vertex_areas(surface, adjacency, context));
-      // What has no area still counts where there is nothing else.
-      for (float& w : weights_.values()) w = std::max(w, std::numeric_limits<float>::min());
-    }
+  Samples(std::span<const VertexField> fields, VertexField weights)
+      : fields_(fields.size()), weights_(std::move(weights)) {
+    // What counts for nothing still counts where there is nothing else.
+    for (float& w : weights_.values()) w = std::max(w, std::numeric_limits<float>::min());
     weighted_.reserve(weights_.size() * fields_);
     for (std::size_t v = 0; v < weights_.size(); ++v) {
       for (const VertexField& field : fields)
-        weighted_.push_back(this->weight(v) * static_cast<double>(field.values()[v]));
+        weighted_.push_back(weight(v) * static_cast<double>(field.values()[v]));
     }
   }
   Sample operator[](std::size_t v) const { return {weight(v), {weighted_.data() + v * fields_, fields_}}; }
@@ -249,33 +246,38 @@ double kept_variance(double c) {
   return 1 - c * c / 2 * edge / (1 - edge);
 }
 
+/// What vertices count for over what heat counts them for, in units of its mean and within bounds.
+VertexField heat_densities(const VertexField& areas, const VertexField& weights) {
+  double area = 0, weight = 0;
+  for (std::size_t v = 0; v < areas.size(); ++v) {
+    if (!(areas.values()[v] > 0)) continue;
+    area += static_cast<double>(areas.values()[v]);
+    weight += static_cast<double>(weights.values()[v]);
+  }
+  VertexField densities(areas.size(), 1.0f);
+  for (std::size_t v = 0; v < areas.size(); ++v) {
+    if (!(areas.values()[v] > 0)) continue;
+    const double density = static_cast<double>(weights.values()[v]) / static_cast<double>(areas.values()[v]);
+    densities.values()[v] =
+        static_cast<float>(std::clamp(density * area / weight, 1 / kMostDensity, kMostDensity));
+  }
+  return densities;
+}
+
+/// `weights` empty: by area.
 std::vector<std::vector<VertexField>> diffused(const Surface& surface, const Adjacency& adjacency,
                                                std::span<const VertexField> fields,
-                                               std::span<const double> sigmas,
-                                               const Neighborhood& neighborhood, const Context& context) {
+                                               std::span<const double> sigmas, double cutoff,
+                                               const VertexField& weights, const Context& context) {
   std::vector<double> times;
-  for (const double sigma : sigmas) times.push_back(kept_variance(neighborhood.cutoff) * sigma * sigma / 2);
+  for (const double sigma : sigmas) times.push_back(kept_variance(cutoff) * sigma * sigma / 2);
   const HeatFlow heat(surface, adjacency, context);
-  if (neighborhood.weight == VertexWeight::area) return heat.run(fields, times, context);
-  // Heat counts by area: what is divided by it counts alike.
-  const std::span<const float> areas = heat.areas().values();
-  const std::size_t count = areas.size();
-  double mean = 0, used = 0;
-  for (const float area : areas) {
-    mean += static_cast<double>(area);
-    used += area > 0;
-  }
-  mean /= std::max(used, 1.0);
-  VertexField density(count, 1.0f);
-  for (std::size_t v = 0; v < count; ++v) {
-    if (areas[v] > 0)
-      density.values()[v] = static_cast<float>(
-          std::clamp(mean / static_cast<double>(areas[v]), 1 / kMostDensity, kMostDensity));
-  }
-  std::vector<VertexField> dense;
-  for (const VertexField& field : fields) {
-    dense.push_back(field);
-    for (std::size_t v = 0; v < count; ++v) dense.back().values()[v] *= density.values()[v];
+  if (weights.empty()) return heat.run(fields, times, context);
+  const VertexField& areas = heat.areas();
+  const VertexField density = heat_densities(areas, weights);
+  std::vector<VertexField> dense(fields.begin(), fields.end());
+  for (VertexField& field : dense) {
+    for (std::size_t v = 0; v < field.size(); ++v) field.values()[v] *= density.values()[v];
   }
   dense.push_back(density);
   std::vector<std::vector<VertexField>> results = heat.run(dense, times, context);
@@ -283,13 +285,23 @@ std::vector<std::vector<VertexField>> diffused(const Surface& surface, const Adj
   results.pop_back();
   for (std::size_t f = 0; f < results.size(); ++f) {
     for (std::size_t i = 0; i < times.size(); ++i) {
-      for (std::size_t v = 0; v < count; ++v) {
+      for (std::size_t v = 0; v < areas.size(); ++v) {
         float& x = results[f][i].values()[v];
-        x = areas[v] > 0 ? x / densities[i].values()[v] : fields[f].values()[v];
+        x = areas.values()[v] > 0 ? x / densities[i].values()[v] : fields[f].values()[v];
       }
     }
   }
   return results;
+}
+
+/// What each vertex counts for; empty if that is the area that heat counts.
+VertexField vertex_weights(const Surface& surface, const Adjacency& adjacency,
+                           const Neighborhood& neighborhood, const VertexField& weights,
+                           const Context& context) {
+  if (!weights.empty()) return weights;
+  if (neighborhood.weight == VertexWeight::one) return VertexField(surface.positions.size(), 1.0f);
+  if (neighborhood.distance == DistanceKind::diffusion) return {};
+  return vertex_areas(surface, adjacency, context);
 }
 
 }  // namespace
@@ -298,19 +310,21 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
                                                         std::span<const VertexField> fields,
                                                         std::span<const double> sigmas,
                                                         const Neighborhood& neighborhood,
-                                                        const Context& context) {
+                                                        const Context& context,
+                                                        const VertexField& weights) {
   const double cutoff = neighborhood.cutoff;
   const bool rising = std::is_sorted(sigmas.begin(), sigmas.end());
   if (sigmas.empty() || !rising || !(sigmas.front() > 0) || !(cutoff > 0))
     throw Error(ErrorKind::usage, "widths of averages must rise from above 0");
+  VertexField counted = vertex_weights(surface, adjacency, neighborhood, weights, context);
   if (neighborhood.distance == DistanceKind::diffusion)
-    return diffused(surface, adjacency, fields, sigmas, neighborhood, context);
+    return diffused(surface, adjacency, fields, sigmas, cutoff, counted, context);
   const double radius = cutoff * sigmas.back();
   const std::size_t count = surface.positions.size();
   std::vector<std::vector<VertexField>> results(fields.size(),
                                                 std::vector<VertexField>(sigmas.size(), VertexField(count)));
   if (count == 0 || fields.empty()) return results;
-  const Samples samples(surface, adjacency, fields, neighborhood.weight, context);
+  const Samples samples(fields, std::move(counted));
   const auto run = [&](auto&& make_search) {
     parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
       auto search = make_search();

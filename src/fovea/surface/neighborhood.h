@@ -41,8 +41,9 @@ struct Neighborhood {
 /// corners opposite, under weights exp(−k d²) with k = 1, 1.2, 1.5, 2 from the first width to the fourth and
 /// on, and d the distance to the straight crossing in mean edge lengths (the paper does not say its unit).
 ///
-/// By `diffusion` with each vertex alike, the heat of f / area over that of 1 / area, where no area counts as
-/// less than 1 / 100 or more than 100 times the mean.
+/// `weights`, [#V] and above 0, replace what `neighborhood` says of w. By `diffusion` with weights other than
+/// areas, the heat of f w / area over that of w / area, where w / area counts as no less than 1 / 100 and no
+/// more than 100 times its mean.
 ///
 /// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what
 /// is within the largest radius of every vertex; by `diffusion` some hundred products with a sparse matrix.
@@ -50,6 +51,7 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
                                                         std::span<const VertexField> fields,
                                                         std::span<const double> sigmas,
                                                         const Neighborhood& neighborhood,
-                                                        const Context& context);
+                                                        const Context& context,
+                                                        const VertexField& weights = {});
 
 }  // namespace fovea
