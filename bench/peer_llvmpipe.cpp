@@ -156,7 +156,7 @@ class GlScene {
     many_ = make_target(size, kSamples);
     one_ = make_target(size, 0);
     white_ = upload_white();
-    textures_.resize(scene.mip_maps.size(), 0);
+    textures_.resize(scene.images.size(), 0);
     for (const SceneMesh& mesh : scene.meshes) {
       for (std::uint32_t part = 0; part < mesh.part_material.size(); ++part) add(mesh, part);
     }
@@ -195,8 +195,8 @@ class GlScene {
     if (const auto& texture = batch.material->base_color_texture) {
       if (static_cast<std::size_t>(texture->uv_set) < mesh.uv.size())
         uv = mesh.uv[static_cast<std::size_t>(texture->uv_set)];
-      GLuint& known = textures_[static_cast<std::size_t>(texture->mip_map)];
-      if (known == 0) known = upload(scene_.mip_maps[static_cast<std::size_t>(texture->mip_map)]);
+      GLuint& known = textures_[static_cast<std::size_t>(texture->image)];
+      if (known == 0) known = upload(*scene_.images[static_cast<std::size_t>(texture->image)].map);
       if (uv != nullptr) batch.texture = known;
     }
     std::vector<GlVertex> vertices;
@@ -281,7 +281,7 @@ class GlScene {
   const RenderScene& scene_;
   int size_;
   GLuint program_ = 0, many_ = 0, one_ = 0, white_ = 0;
-  std::vector<GLuint> textures_;  // [#mip_maps], 0 until it is used
+  std::vector<GLuint> textures_;  // [#images], 0 until it is used
   std::vector<Batch> batches_;
 };
 

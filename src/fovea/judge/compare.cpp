@@ -137,7 +137,7 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
     throw Error(ErrorKind::usage, "the reference has no triangles to compare with");
   std::vector<RenderScene> test_scenes;
   for (const Model* test : tests)
-    test_scenes.push_back(make_render_scene(*test, pose_of(*test, options.pose), context));
+    test_scenes.push_back(make_render_scene(*test, pose_of(*test, options.pose), context, &scene));
   const std::vector<View> views = views_of(options.views, reference, pose, scene);
 
   std::vector<Comparison> result(tests.size());

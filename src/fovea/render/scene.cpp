@@ -14,10 +14,10 @@ namespace fovea {
 
 namespace {
 
-/// Numbers the mip maps that materials ask for, and makes them.
-class MipMaps {
+/// Numbers the images that materials ask for, and decodes them.
+class SceneImages {
  public:
-  explicit MipMaps(const Model& model) : model_(model) {}
+  explicit SceneImages(const Model& model) : model_(model) {}
 
   std::optional<SceneTexture> use(const std::optional<TextureRef>& ref, ColorEncoding encoding) {
     if (!ref || ref->texture < 0) return std::nullopt;
@@ -27,26 +27,24 @@ class MipMaps {
     const auto [entry, is_new] =
         number_.try_emplace({texture.image, encoding}, static_cast<int>(wanted_.size()));
     if (is_new) wanted_.push_back({texture.image, encoding});
-    result.mip_map = entry->second;
+    result.image = entry->second;
     result.uv_set = ref->uv_set;
     if (texture.sampler >= 0) result.sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
     if (ref->transform) set_transform(result, *ref->transform);
     return result;
   }
 
-  std::vector<MipMap> make(Context& context) const {
-    std::vector<MipMap> maps(wanted_.size());
+  std::vector<SceneImage> make(Context& context, const RenderScene* other) const {
+    std::vector<SceneImage> images(wanted_.size());
     parallel_for(context, wanted_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const EncodedImage& image = model_.images[static_cast<std::size_t>(wanted_[i].first)];
-        try {
-          maps[i] = MipMap(decode_image(image.bytes), wanted_[i].second);
-        } catch (const Error& error) {
-          context.report("image-not-shown", error.message(), "/images/" + std::to_string(wanted_[i].first));
-        }
+        images[i].image = &model_.images[static_cast<std::size_t>(wanted_[i].first)];
+        images[i].encoding = wanted_[i].second;
+        if (other != nullptr) images[i].map = find(*other, images[i]);
+        if (images[i].map == nullptr) images[i].map = decode(images[i], wanted_[i].first, context);
       }
     });
-    return maps;
+    return images;
   }
 
  private:
@@ -61,26 +59,42 @@ class MipMaps {
     texture.y = static_cast<float>(t.offset.y);
   }
 
+  static std::shared_ptr<const MipMap> find(const RenderScene& scene, const SceneImage& wanted) {
+    for (const SceneImage& image : scene.images) {
+      if (image.encoding == wanted.encoding && image.image->bytes == wanted.image->bytes) return image.map;
+    }
+    return nullptr;
+  }
+
+  static std::shared_ptr<const MipMap> decode(const SceneImage& wanted, int number, Context& context) {
+    try {
+      return std::make_shared<MipMap>(decode_image(wanted.image->bytes), wanted.encoding);
+    } catch (const Error& error) {
+      context.report("image-not-shown", error.message(), "/images/" + std::to_string(number));
+      return std::make_shared<MipMap>();
+    }
+  }
+
   const Model& model_;
   std::map<std::pair<int, ColorEncoding>, int> number_;
-  std::vector<std::pair<int, ColorEncoding>> wanted_;  // image and encoding of each mip map
+  std::vector<std::pair<int, ColorEncoding>> wanted_;  // image and encoding of each
 };
 
-SceneMaterial scene_material(const Material& m, MipMaps& maps) {
+SceneMaterial scene_material(const Material& m, SceneImages& images) {
   SceneMaterial s;
   const auto f = [](double x) { return static_cast<float>(x); };
   const auto& c = m.base_color_factor;
   s.base_color = {f(c[0]), f(c[1]), f(c[2]), f(c[3])};
-  s.base_color_texture = maps.use(m.base_color, ColorEncoding::srgb);
+  s.base_color_texture = images.use(m.base_color, ColorEncoding::srgb);
   s.metallic = f(m.metallic_factor);
   s.roughness = f(m.roughness_factor);
-  s.metallic_roughness_texture = maps.use(m.metallic_roughness, ColorEncoding::linear);
-  s.normal_texture = maps.use(m.normal, ColorEncoding::linear);
+  s.metallic_roughness_texture = images.use(m.metallic_roughness, ColorEncoding::linear);
+  s.normal_texture = images.use(m.normal, ColorEncoding::linear);
   s.normal_scale = f(m.normal_scale);
-  s.occlusion_texture = maps.use(m.occlusion, ColorEncoding::linear);
+  s.occlusion_texture = images.use(m.occlusion, ColorEncoding::linear);
   s.occlusion_strength = f(m.occlusion_strength);
   s.emission = {f(m.emissive_factor[0]), f(m.emissive_factor[1]), f(m.emissive_factor[2]), 1};
-  s.emissive_texture = maps.use(m.emissive, ColorEncoding::srgb);
+  s.emissive_texture = images.use(m.emissive, ColorEncoding::srgb);
   s.alpha_mode = m.alpha_mode;
   s.alpha_cutoff = f(m.alpha_cutoff);
   s.double_sided = m.double_sided;
@@ -92,7 +106,7 @@ SceneMaterial scene_material(const Material& m, MipMaps& maps) {
 void finish_textures(RenderScene& scene) {
   std::vector<const SceneTexture*> known;
   const auto map = [&](const SceneTexture& t) -> const MipMap& {
-    return scene.mip_maps[static_cast<std::size_t>(t.mip_map)];
+    return *scene.images[static_cast<std::size_t>(t.image)].map;
   };
   const auto same_look = [&](const SceneTexture& a, const SceneTexture& b) {
     return a.uv_set == b.uv_set && a.xx == b.xx && a.xy == b.xy && a.x == b.x && a.yx == b.yx &&
@@ -144,12 +158,13 @@ Sphere sphere_around(const std::vector<SceneMesh>& meshes) {
 
 }  // namespace
 
-RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context) {
+RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context,
+                              const RenderScene* other) {
   RenderScene scene;
-  MipMaps maps(model);
-  for (const Material& material : model.materials) scene.materials.push_back(scene_material(material, maps));
-  scene.materials.push_back(scene_material(Material{}, maps));
-  scene.mip_maps = maps.make(context);
+  SceneImages images(model);
+  for (const Material& material : model.materials) scene.materials.push_back(scene_material(material, images));
+  scene.materials.push_back(scene_material(Material{}, images));
+  scene.images = images.make(context, other);
   finish_textures(scene);
 
   const std::vector<Instance> shown = instances(model, pose);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace fovea {
 
 /// A texture as a material uses it, ready to be looked up.
 struct SceneTexture {
-  int mip_map = -1;  ///< Index into RenderScene::mip_maps.
+  int image = -1;  ///< Index into RenderScene::images.
   int look = -1;     ///< The same for textures that are looked up with the same footprint.
   int uv_set = 0;
   Sampler sampler;
@@ -52,20 +53,29 @@ struct SceneMesh {
   std::vector<std::uint32_t> part_material;  ///< [#parts], into RenderScene::materials.
 };
 
+/// A decoded image with where it comes from. Scenes of models with the same images can share it.
+struct SceneImage {
+  const EncodedImage* image = nullptr;
+  ColorEncoding encoding = ColorEncoding::srgb;
+  std::shared_ptr<const MipMap> map;  ///< Without levels if it could not be decoded.
+};
+
 /// What a picture is drawn of: the instances of a model in a pose, with decoded textures. Triangles are
 /// numbered through: instance by instance, each in the order of its mesh. Refers to the model, which must
 /// outlive it.
 struct RenderScene {
   std::vector<SceneMesh> meshes;
   std::vector<SceneMaterial> materials;  ///< The model's, then glTF's default one.
-  std::vector<MipMap> mip_maps;          ///< Of images that materials use, per encoding.
+  std::vector<SceneImage> images;        ///< Those that materials use, per encoding.
   std::uint64_t triangle_count = 0;
   Sphere sphere;  ///< Around the centre of the box of all positions.
 };
 
 /// Poses all instances and decodes the images in parallel. Images that cannot be decoded (KTX2, damaged)
-/// count as absent and are reported ("image-not-shown"). Throws Error(limit) beyond 2³² − 1 triangles.
-RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context);
+/// count as absent and are reported ("image-not-shown"). Images that `other` has decoded already are shared with
+/// it. Throws Error(limit) beyond 2³² − 1 triangles.
+RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context,
+                              const RenderScene* other = nullptr);
 
 /// A mesh alone as it lies in its own space, grey, both sides of its triangles shown. Refers to the mesh,
 /// which must outlive it.

@@ -83,7 +83,7 @@ std::array<const float*, 3> TriangleShader::uv_of_set(int set) const {
 }
 
 Rgba TriangleShader::look_up(const SceneTexture& texture, const SurfacePoint& point, LastLook& last) const {
-  const MipMap& map = scene_.mip_maps[static_cast<std::size_t>(texture.mip_map)];
+  const MipMap& map = *scene_.images[static_cast<std::size_t>(texture.image)].map;
   if (last.look != texture.look) {
     const auto corners = uv(texture.uv_set);
     if (corners[0] == nullptr) return {1, 1, 1, 1};
