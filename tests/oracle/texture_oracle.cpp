@@ -96,9 +96,12 @@ TexelGather::TexelGather(const TriMesh& mesh, const TextureRef& ref, int width, 
   for (const ValueId value : layer.corner_value) corner_chart_.push_back(root(value.value));
 }
 
-std::optional<double> TexelGather::average(const ImageF& plane, std::uint32_t vertex, double radius) const {
+std::optional<std::array<double, 3>> TexelGather::average(const TextureSignals& signals, std::uint32_t vertex,
+                                                          double radius) const {
   const Vec3d v(mesh_.positions[vertex]);
-  double sum = 0, weights = 0;
+  const ImageF* const planes[] = {&signals.intensity, &signals.opponency, &signals.entropy};
+  std::array<double, 3> sums{};
+  double weights = 0;
   for (std::size_t face = 0; face < mesh_.face_count(); ++face) {
     const std::size_t c = 3 * face;
     bool touches = false;
@@ -131,14 +134,16 @@ std::optional<double> TexelGather::average(const ImageF& plane, std::uint32_t ve
         if (centers.empty()) ratio = length(p0 + on_surface(te - t0) - v) / radius;
         if (ratio > 1) continue;
         const double weight = std::exp(-ratio * ratio / 2);
-        sum += weight * static_cast<double>(
-                            *plane.at(wrapped(x, width_, Wrap::repeat), wrapped(y, height_, Wrap::repeat)));
+        const int column = wrapped(x, width_, Wrap::repeat), row = wrapped(y, height_, Wrap::repeat);
+        for (std::size_t k = 0; k < 3; ++k)
+          sums[k] += weight * static_cast<double>(*planes[k]->at(column, row));
         weights += weight;
       }
     }
   }
   if (weights == 0) return {};
-  return sum / weights;
+  for (double& sum : sums) sum /= weights;
+  return sums;
 }
 
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {

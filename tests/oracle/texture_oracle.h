@@ -30,8 +30,9 @@ class TexelGather {
   /// For a mesh whose parts all use this texture of a material. Coordinates outside of [0, 1] repeat.
   TexelGather(const TriMesh& mesh, const TextureRef& ref, int width, int height);
 
-  /// Averages of a plane; none where no texel is in reach.
-  std::optional<double> average(const ImageF& plane, std::uint32_t vertex, double radius) const;
+  /// Averages of the three signals; none where no texel is in reach.
+  std::optional<std::array<double, 3>> average(const TextureSignals& signals, std::uint32_t vertex,
+                                               double radius) const;
 
  private:
   const TriMesh& mesh_;

@@ -110,47 +110,51 @@ MaterialTexels::MaterialTexels(const TexelSource& source, const Image8& image, b
     light_.push_back(srgb_to_linear(static_cast<float>(i) / kSmoothUnit));
 }
 
-/// `signals(texel, x, y)` gives those of a texel at a place.
+Barycentric::Barycentric(const std::array<Vec2d, 3>& triangle)
+    : origin_(triangle[0]), a_(triangle[1] - triangle[0]), b_(triangle[2] - triangle[0]) {
+  const double area = cross(a_, b_), scale = area != 0 ? 1 / area : 0;
+  a_ = a_ * scale;
+  b_ = b_ * scale;
+}
+
+/// `signals(texel, corners)` gives those of a texel at a place with these weights of the corners.
 template <class F>
-TexelMean MaterialTexels::mean_of(const std::array<Vec2d, 3>& triangle, std::int64_t step,
-                                  F&& signals) const {
+TexelMeans MaterialTexels::means_of(const std::array<Vec2d, 3>& triangle, std::int64_t step,
+                                    F&& signals) const {
   const auto texel = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   };
-  TexelMean mean;
+  const Barycentric barycentric(triangle);
+  TexelMeans means;
   for_texel_rows(triangle, step, [&](std::int64_t y, std::int64_t begin, std::int64_t end) {
     const std::size_t row = texel(0, wrapped_texel(y, height_, sampler_.wrap_v));
     const double at = static_cast<double>(y) + 0.5;
     for (std::int64_t x = begin; x < end; x += step) {
       const auto column = static_cast<std::size_t>(wrapped_texel(x, width_, sampler_.wrap_u));
-      mean.add(signals(row + column, Vec2d{static_cast<double>(x) + 0.5, at}), 1);
+      const std::array<double, 3> corners = barycentric.at({static_cast<double>(x) + 0.5, at});
+      means.add(signals(row + column, corners), corners);
     }
   });
-  if (!mean.empty()) return mean;
+  if (!means.empty()) return means;
+  constexpr std::array<double, 3> kMiddle{1.0 / 3, 1.0 / 3, 1.0 / 3};
   const Vec2d middle = (triangle[0] + triangle[1] + triangle[2]) * (1.0 / 3);
   for (const BilinearTap& tap : bilinear_taps(middle, width_, height_, sampler_)) {
-    if (tap.weight > 0) mean.add(signals(texel(tap.x, tap.y), middle), tap.weight);
+    if (tap.weight > 0) means.add(signals(texel(tap.x, tap.y), kMiddle), kMiddle, tap.weight);
   }
-  return mean;
+  return means;
 }
 
-TexelMean MaterialTexels::mean(const std::array<Vec2d, 3>& triangle, std::int64_t step) const {
-  return mean_of(triangle, step, [&](std::size_t texel, Vec2d) {
+TexelMeans MaterialTexels::means(const std::array<Vec2d, 3>& triangle, std::int64_t step) const {
+  return means_of(triangle, step, [&](std::size_t texel, const auto&) {
     return std::array<float, 3>{plane_[0][texel], plane_[1][texel], plane_[2][texel]};
   });
 }
 
-TexelMean MaterialTexels::mean(const std::array<Vec2d, 3>& triangle, std::int64_t step,
-                               const std::array<Vec3f, 3>& tint) const {
-  constexpr double kLeastArea = 1e-9;
-  const Vec2d a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
-  const double area = cross(a, b);
-  const bool is_flat = std::abs(area) < kLeastArea;
-  return mean_of(triangle, step, [&](std::size_t texel, Vec2d at) {
-    const Vec2d p = at - triangle[0];
-    const auto s = static_cast<float>(is_flat ? 1.0 / 3 : cross(p, b) / area),
-               t = static_cast<float>(is_flat ? 1.0 / 3 : cross(a, p) / area);
-    const Vec3f by = tint[0] * (1 - s - t) + tint[1] * s + tint[2] * t;
+TexelMeans MaterialTexels::means(const std::array<Vec2d, 3>& triangle, std::int64_t step,
+                                 const std::array<Vec3f, 3>& tint) const {
+  return means_of(triangle, step, [&](std::size_t texel, const std::array<double, 3>& corners) {
+    Vec3f by;
+    for (std::size_t k = 0; k < 3; ++k) by += tint[k] * static_cast<float>(corners[k]);
     const std::uint16_t* const smooth = smooth_.pixels.data() + 3 * texel;
     const ColorSignals color =
         signals_of_light({light_[smooth[0]] * by.x, light_[smooth[1]] * by.y, light_[smooth[2]] * by.z});

@@ -42,22 +42,45 @@ struct TexelSource {
   friend auto operator<=>(const TexelSource&, const TexelSource&) = default;
 };
 
-/// Mean signals of texels.
-class TexelMean {
+/// Places in a triangle as weights of its corners, with sum 1.
+class Barycentric {
  public:
-  void add(const std::array<float, 3>& signals, double weight) {
-    if (weight_ == 0) first_ = signals;
-    for (std::size_t k = 0; k < 3; ++k) sum_[k] += static_cast<double>(signals[k] - first_[k]) * weight;
-    weight_ += weight;
+  explicit Barycentric(const std::array<Vec2d, 3>& triangle);
+  std::array<double, 3> at(Vec2d point) const {
+    const Vec2d p = point - origin_;
+    const double s = cross(p, b_), t = cross(a_, p);
+    return {1 - s - t, s, t};
   }
-  bool empty() const { return weight_ == 0; }
-  float operator[](std::size_t k) const { return first_[k] + static_cast<float>(sum_[k] / weight_); }
 
  private:
+  Vec2d origin_, a_, b_;  // edges over twice the area; 0 if there is none
+};
+
+/// Mean signals of the texels of a triangle near each of its corners: those have the square of the corner's
+/// weight there.
+class TexelMeans {
+ public:
+  void add(const std::array<float, 3>& signals, const std::array<double, 3>& corners, double weight = 1) {
+    if (is_empty_) first_ = signals;
+    is_empty_ = false;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double w = weight * (corners[c] * corners[c] + kLeastWeight);
+      weight_[c] += w;
+      for (std::size_t k = 0; k < 3; ++k) sum_[c][k] += w * static_cast<double>(signals[k] - first_[k]);
+    }
+  }
+  bool empty() const { return is_empty_; }
+  float mean(std::size_t signal, std::size_t corner) const {
+    return first_[signal] + static_cast<float>(sum_[corner][signal] / weight_[corner]);
+  }
+
+ private:
+  static constexpr double kLeastWeight = 1e-4;  // a texel at another corner is better than none
   // Around the first, so that a constant stays what it is.
+  bool is_empty_ = true;
   std::array<float, 3> first_{};
-  std::array<double, 3> sum_{};
-  double weight_ = 0;
+  std::array<std::array<double, 3>, 3> sum_{};  // [corner][signal]
+  std::array<double, 3> weight_{};
 };
 
 /// Signals of a colour given as light, as bytes would store it.
@@ -78,14 +101,14 @@ class MaterialTexels {
 
   /// Means over a triangle given in texels: over those whose centres it covers, in rows and columns that are
   /// multiples of `step`, or the bilinear sample in its middle if there are none. O(#texels covered).
-  TexelMean mean(const std::array<Vec2d, 3>& triangle, std::int64_t step) const;
+  TexelMeans means(const std::array<Vec2d, 3>& triangle, std::int64_t step) const;
   /// The same where the texels are multiplied by colours (as light) of the corners.
-  TexelMean mean(const std::array<Vec2d, 3>& triangle, std::int64_t step,
-                 const std::array<Vec3f, 3>& tint) const;
+  TexelMeans means(const std::array<Vec2d, 3>& triangle, std::int64_t step,
+                   const std::array<Vec3f, 3>& tint) const;
 
  private:
   template <class F>
-  TexelMean mean_of(const std::array<Vec2d, 3>& triangle, std::int64_t step, F&& signals) const;
+  TexelMeans means_of(const std::array<Vec2d, 3>& triangle, std::int64_t step, F&& signals) const;
 
   Sampler sampler_;
   int width_, height_;

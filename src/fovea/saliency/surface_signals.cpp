@@ -26,6 +26,9 @@ constexpr std::size_t kVertexGrain = 1 << 12;
 constexpr double kMostTurns = 1e6;
 /// Texels of one texture that triangles look at.
 constexpr double kMostLooks = 1 << 25;
+/// Triangles have no fewer texels than this part of what others of their area have: a texture of a few
+/// colours may give each triangle one point.
+constexpr double kLeastDensity = 0.01;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 const std::optional<TextureRef>& texture_of(const Material& material, Purpose purpose) {
@@ -145,7 +148,9 @@ struct MeshState {
   const TriMesh* mesh = nullptr;
   VertexColors colors;
   std::vector<std::uint32_t> first_face, faces;     // of each part [#parts + 1], [#F]
-  std::array<std::vector<float>, kSignals> values;  // [#F], kNone where there is no texture; or not wanted
+  std::array<std::vector<float>, kSignals> values;  // [#F × 3], kNone without texture; empty if not wanted
+
+  std::vector<float> texels;  // [#F], of the base colour; kNone without
 
   MeshState(const TriMesh& triangles, const SurfaceSignalOptions& options)
       : mesh(&triangles), colors(triangles) {
@@ -155,8 +160,9 @@ struct MeshState {
     faces.resize(mesh->face_count());
     std::vector<std::uint32_t> next = first_face;
     for (std::uint32_t f = 0; f < faces.size(); ++f) faces[next[mesh->face_part[f]]++] = f;
+    texels.assign(mesh->face_count(), kNone);
     for (std::size_t s = 0; s < kSignals; ++s) {
-      if (is_wanted(static_cast<Signal>(s), options)) values[s].assign(mesh->face_count(), kNone);
+      if (is_wanted(static_cast<Signal>(s), options)) values[s].assign(3 * mesh->face_count(), kNone);
     }
   }
   std::span<const std::uint32_t> faces_of(std::uint32_t part) const {
@@ -286,17 +292,20 @@ class SignalMaker {
     const auto uv = map.triangle(face);
     if (!uv) return;
     const std::array<Vec2d, 3> triangle = in_texels(*uv, texels.width(), texels.height());
-    const std::int64_t step = step_of(cover(triangle), most);
+    const Cover covered = cover(triangle);
+    const std::int64_t step = step_of(covered, most);
     const std::size_t c = std::size_t{3} * face;
     const bool tinted = source.purpose == Purpose::color && state.is_tinted(face);
-    const TexelMean mean =
-        tinted ? texels.mean(triangle, step,
-                             {state.colors.light(c), state.colors.light(c + 1), state.colors.light(c + 2)})
-               : texels.mean(triangle, step);
-    for (std::size_t k = 0; k < texels.signal_count(); ++k) {
-      std::vector<float>& values = state.values[static_cast<std::size_t>(first_signal(source.purpose)) + k];
-      if (!values.empty()) values[face] = mean[k];
+    const TexelMeans means =
+        tinted ? texels.means(triangle, step,
+                              {state.colors.light(c), state.colors.light(c + 1), state.colors.light(c + 2)})
+               : texels.means(triangle, step);
+    for (std::size_t s = 0; s < texels.signal_count(); ++s) {
+      std::vector<float>& values = state.values[static_cast<std::size_t>(first_signal(source.purpose)) + s];
+      if (values.empty()) continue;
+      for (std::size_t k = 0; k < 3; ++k) values[c + k] = means.mean(s, k);
     }
+    if (source.purpose == Purpose::color) state.texels[face] = static_cast<float>(covered.texels);
   }
 
   /// How many texels a triangle may look at, as a power of two, for all together to stay below kMostLooks.
@@ -352,7 +361,7 @@ class SignalMaker {
         // Around the first, so that a constant stays what it is.
         double first = 0, sum = 0, weight = 0;
         for (const std::uint32_t c : corners) {
-          float x = values[c / 3];
+          float x = values[c];
           if (std::isnan(x)) {
             const Part& part = state.mesh->parts[state.mesh->face_part[c / 3]];
             x = without_texture(signal, material_of(model_, part), state.colors.light(c));
@@ -375,15 +384,41 @@ class SignalMaker {
     areas.reserve(surface.triangles.size());
     for (const auto& [a, b, c] : surface.triangles) {
       const Vec3d p = surface.position(a);
-      areas.push_back(length(cross(surface.position(b) - p, surface.position(c) - p)));
+      areas.push_back(length(cross(surface.position(b) - p, surface.position(c) - p)) / 2);
     }
     const auto field = [&](Signal signal) { return at_vertices(signal, state, adjacency, areas); };
-    SurfaceSignals result{field(Signal::intensity),     field(Signal::opponency),
-                          field(Signal::entropy),       field(Signal::emission),
-                          field(Signal::roughness),     field(Signal::metalness),
-                          field(Signal::normal_detail), false};
+    SurfaceSignals result;
+    result.intensity = field(Signal::intensity);
+    result.opponency = field(Signal::opponency);
+    result.entropy = field(Signal::entropy);
+    result.emission = field(Signal::emission);
+    result.roughness = field(Signal::roughness);
+    result.metalness = field(Signal::metalness);
+    result.normal_detail = field(Signal::normal_detail);
+    result.texels = texels_at_vertices(state, areas);
     for (const VertexField* signal : {&result.intensity, &result.opponency, &result.entropy})
       result.textured = result.textured || varies(*signal, adjacency);
+    return result;
+  }
+
+  static VertexField texels_at_vertices(const MeshState& state, const std::vector<double>& areas) {
+    double area = 0, texels = 0;
+    for (std::size_t f = 0; f < areas.size(); ++f) {
+      if (std::isnan(state.texels[f])) continue;
+      area += areas[f];
+      texels += static_cast<double>(state.texels[f]);
+    }
+    const double density = area > 0 && texels > 0 ? texels / area : 1;
+    std::vector<double> sums(state.mesh->vertex_count());
+    for (std::size_t f = 0; f < areas.size(); ++f) {
+      const double usual = density * areas[f];
+      const double count = std::isnan(state.texels[f])
+                               ? usual
+                               : std::max(static_cast<double>(state.texels[f]), kLeastDensity * usual);
+      for (const VertexId v : state.mesh->triangles[f]) sums[v.index()] += count / 3;
+    }
+    VertexField result(sums.size());
+    for (std::size_t v = 0; v < sums.size(); ++v) result.values()[v] = static_cast<float>(sums[v]);
     return result;
   }
 
