@@ -335,7 +335,8 @@ TEST(SurfaceSignals, ATriangleWithoutTexelsCountsByItsArea) {
   // A palette: all at one point of the texture.
   TriMesh mesh = test::grid(3, 3);
   scale_uv(mesh, 0, 0.5f);
-  for (const float x : signals(painted(mesh, plain(8, 8, 1, 2, 3))).texels.values()) EXPECT_GT(x, 0);
+  const VertexField palette = signals(painted(mesh, plain(8, 8, 1, 2, 3))).texels;
+  for (const float x : palette.values()) EXPECT_GT(x, 0);
 }
 
 TEST(SurfaceSignals, AnImageThatCannotBeDecodedIsReported) {

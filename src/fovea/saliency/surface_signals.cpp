@@ -149,8 +149,7 @@ struct MeshState {
   VertexColors colors;
   std::vector<std::uint32_t> first_face, faces;     // of each part [#parts + 1], [#F]
   std::array<std::vector<float>, kSignals> values;  // [#F × 3], kNone without texture; empty if not wanted
-
-  std::vector<float> texels;  // [#F], of the base colour; kNone without
+  std::vector<float> texels;                        // [#F], of the base colour; kNone without
 
   MeshState(const TriMesh& triangles, const SurfaceSignalOptions& options)
       : mesh(&triangles), colors(triangles) {
@@ -223,7 +222,9 @@ class SignalMaker {
   std::vector<SurfaceSignals> run() {
     std::optional<Image8> image;
     int decoded = -1;
+    double done = 0;
     for (const auto& [source, uses] : uses_) {
+      context_.advance_or_throw("textures", done++ / static_cast<double>(uses_.size()));
       if (source.image != decoded) image = decode(source.image);
       decoded = source.image;
       if (image) look(source, *image, uses);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "fovea/base/math.h"
 #include "fovea/model/material.h"
