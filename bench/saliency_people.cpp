@@ -19,8 +19,9 @@
 #include "fovea/base/error.h"
 #include "fovea/io/read.h"
 #include "fovea/saliency/baseline.h"
-#include "fovea/saliency/mesh_saliency.h"
+#include "fovea/saliency/model_saliency.h"
 #include "fovea/saliency/people_data.h"
+#include "fovea/surface/scene_surface.h"
 
 namespace fovea::bench {
 namespace {
@@ -37,64 +38,69 @@ struct Predictor {
 template <class F>
 Predictor of_surface(std::string name, F predict) {
   return {std::move(name), [predict](const Model& model, Context& context) {
-            const VertexField whole = predict(whole_surface(model), context);
-            std::vector<VertexField> fields;
-            auto at = whole.values().begin();
-            for (const Mesh& mesh : model.meshes) {
-              const auto end = at + static_cast<std::ptrdiff_t>(mesh.surface.vertex_count());
-              fields.emplace_back(std::vector<float>(at, end));
-              at = end;
-            }
-            return fields;
+            const SceneSurface scene = scene_surface(model, rest_pose(model));
+            return split(scene, predict(scene.surface, context));
           }};
 }
 
-VertexField joined(const std::vector<VertexField>& fields) {
-  std::vector<float> values;
-  for (const VertexField& field : fields) {
-    const std::span<const float> part = field.values();
-    values.insert(values.end(), part.begin(), part.end());
-  }
-  return VertexField(std::move(values));
+Predictor of_saliency(std::string name, const SaliencyOptions& options) {
+  return {std::move(name), [options](const Model& model, Context& context) {
+            return model_saliency(model, options, context).saliency;
+          }};
 }
 
-Predictor by_shape(std::string name, const MeshSaliencyOptions& options) {
-  return of_surface(std::move(name), [options](const Surface& surface, const Context& context) {
-    return mesh_saliency(surface, options, context).saliency;
-  });
+Predictor preset(std::string name, SaliencyPreset preset, UpAxis up) {
+  SaliencyOptions options;
+  options.preset = preset;
+  options.ring.up = up;
+  return of_saliency(std::move(name), options);
 }
 
-std::vector<Predictor> all_predictors(Vec3d up) {
-  return {
-      of_surface("uniform",
-                 [](const Surface& s, const Context&) { return VertexField(s.positions.size(), 1); }),
-      of_surface("centre", near_center),
-      of_surface("centre-far", far_from_center),
-      of_surface("axis", along_main_axis),
-      of_surface("height", [up](const Surface& s, const Context& context) { return along(s, up, context); }),
-      by_shape("lee", kLeeSaliency),
-      by_shape("munaretti", kMunarettiSaliency)};
+/// One part of the default alone.
+Predictor part(std::string name, std::optional<double> SaliencyOptions::*weight, UpAxis up) {
+  SaliencyOptions options;
+  options.ring.up = up;
+  for (const auto other : {&SaliencyOptions::geometry, &SaliencyOptions::texture, &SaliencyOptions::height,
+                           &SaliencyOptions::extremity, &SaliencyOptions::visibility})
+    options.*other = other == weight ? 1 : 0;
+  return of_saliency(std::move(name), options);
+}
+
+std::vector<Predictor> all_predictors(UpAxis up) {
+  const Vec3d upward = direction(up);
+  return {of_surface("uniform",
+                     [](const Surface& s, const Context&) { return VertexField(s.positions.size(), 1); }),
+          of_surface("centre", near_center),
+          of_surface("centre-far", far_from_center),
+          of_surface("axis", along_main_axis),
+          of_surface("height", [upward](const Surface& s,
+                                        const Context& context) { return along(s, upward, context); }),
+          preset("lee", SaliencyPreset::lee, up),
+          preset("munaretti", SaliencyPreset::munaretti, up),
+          preset("yang", SaliencyPreset::yang, up),
+          preset("fovea", SaliencyPreset::fovea, up),
+          part("fovea-geometry", &SaliencyOptions::geometry, up),
+          part("fovea-texture", &SaliencyOptions::texture, up),
+          part("fovea-visibility", &SaliencyOptions::visibility, up)};
 }
 
 // --- What is asked for --------------------------------------------------------------------------------
 
 struct Task {
   std::filesystem::path folder;
-  Vec3d up{0, 1, 0};
+  UpAxis up = UpAxis::y;
   bool json = false;
   std::vector<std::string> only;  ///< Names of predictors; all if empty.
 };
 
 constexpr const char* kUsage = "saliency_people FOLDER [--up x|y|z|-x|-y|-z] [--json] [PREDICTOR...]";
 
-Vec3d read_direction(const std::string& word) {
-  static constexpr std::pair<const char*, Vec3d> kDirections[] = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},
-                                                                  {"z", {0, 0, 1}},   {"-x", {-1, 0, 0}},
-                                                                  {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
-  for (const auto& [name, direction] : kDirections) {
-    if (word == name) return direction;
-  }
-  throw Error(ErrorKind::usage, fmt::format("--up: \"{}\" is not one of x, y, z, -x, -y, -z", word));
+UpAxis read_axis(const std::string& word) {
+  static constexpr const char* kNames[] = {"x", "y", "z", "-x", "-y", "-z"};  // in the order of UpAxis
+  const auto at = std::find(std::begin(kNames), std::end(kNames), word);
+  if (at == std::end(kNames))
+    throw Error(ErrorKind::usage, fmt::format("--up: \"{}\" is not one of x, y, z, -x, -y, -z", word));
+  return static_cast<UpAxis>(at - std::begin(kNames));
 }
 
 Task read_task(const std::vector<std::string>& words) {
@@ -103,7 +109,7 @@ Task read_task(const std::vector<std::string>& words) {
     if (words[i] == "--json") {
       task.json = true;
     } else if (words[i] == "--up" && i + 1 < words.size()) {
-      task.up = read_direction(words[++i]);
+      task.up = read_axis(words[++i]);
     } else if (words[i].starts_with("-")) {
       throw Error(ErrorKind::usage, fmt::format("\"{}\" is not understood: {}", words[i], kUsage));
     } else if (task.folder.empty()) {
@@ -154,7 +160,7 @@ Row score(const PeopleFiles& files, const std::vector<Predictor>& predictors) {
   Context context;
   const Model model = read_model(files.model, {}, context);
   Row row{files.name, read_people_map(files, model), {}};
-  const Surface surface = whole_surface(model);
+  const Surface surface = scene_surface(model, rest_pose(model)).surface;
   try {
     for (const Predictor& predictor : predictors)
       row.scores.push_back(agreement(joined(predictor.predict(model, context)), row.map, surface, context));

@@ -5,6 +5,9 @@
 #include "field_source.h"
 #include "fovea/io/read.h"
 #include "fovea/io/write.h"
+#include "fovea/saliency/model_saliency.h"
+#include "fovea/simplify/auto_saliency.h"
+#include "fovea/simplify/salient.h"
 #include "report.h"
 #include "simplify_text.h"
 #include "text.h"
@@ -15,6 +18,9 @@ namespace fovea::cli {
 namespace {
 
 constexpr int kTargetMissed = 8;
+
+/// Where saliency comes from; presets in the order of SaliencyPreset.
+enum class SaliencySource { none, chosen, fovea, yang, lee, munaretti };
 
 class Simplify : public Verb {
  public:
@@ -30,6 +36,8 @@ class Simplify : public Verb {
               "As few triangles as an error of 0.2 % of the diagonal allows."},
              {"fovea simplify face.glb -o face-10.glb --ratio 0.1 --importance _IMPORTANCE",
               "Spend the triangles where the vertex attribute _IMPORTANCE is high."},
+             {"fovea simplify vase.glb -o vase-small.glb --ratio 0.05 --saliency auto",
+              "Try what people look at in several ways and keep what looks best."},
              {"fovea simplify room.glb -o room-web.glb --ratio 0.2 --quantize --compression meshopt",
               "Simplify and store compactly."}}};
   }
@@ -44,6 +52,17 @@ class Simplify : public Verb {
           "vertex attribute such as _IMPORTANCE or COLOR_0.",
           &importance_, "file or name"},
          {"allow-miss", "Exit with 0 even if the target is not reached.", &allow_miss_, ""}});
+    arguments.add(
+        "Saliency",
+        {{"saliency",
+          "Spend triangles where people look: by a preset of \"fovea saliency\", or by what measures "
+          "best on pictures of this model (auto, which takes several times as long). None by default, "
+          "as that measured best over many models.",
+          choice(saliency_, {"none", "auto", "fovea", "yang", "lee", "munaretti"}), ""}});
+    arguments.add("Saliency", describe(salient_options_));
+    OptionList saliency = describe(saliency_options_);
+    std::erase_if(saliency, [](const Option& o) { return o.name != "key-poses" && o.name != "up"; });
+    arguments.add("Saliency", saliency);
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
@@ -61,6 +80,8 @@ class Simplify : public Verb {
       importance = session.phase(
           "importance", [&] { return load_fields(importance_, "--importance", model, read_options_); });
     }
+    if (saliency_ != SaliencySource::none)
+      importance = session.phase("saliency", [&] { return with_saliency(model, importance, session); });
     const SimplifyResult result =
         session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });
     const auto files = session.phase(
@@ -79,6 +100,28 @@ class Simplify : public Verb {
     check_output(output_, {input_}, write_options_.force);
   }
 
+  Importance with_saliency(const Model& model, const Importance& importance, Session& session) {
+    if (saliency_ == SaliencySource::chosen) return choose(model, importance, session);
+    saliency_options_.preset =
+        static_cast<SaliencyPreset>(static_cast<int>(saliency_) - static_cast<int>(SaliencySource::fovea));
+    const ModelSaliency found = model_saliency(model, saliency_options_, session.context);
+    session.report["saliency"] = {{"textured", found.textured}, {"poses", found.poses}};
+    return product(importance, salient_importance(model, found.saliency, salient_options_, session.context));
+  }
+
+  Importance choose(const Model& model, const Importance& importance, Session& session) {
+    AutoSaliency found = choose_saliency(model, options_, importance, saliency_options_, session.context);
+    Json trials = Json::array();
+    for (const SaliencyTrial& trial : found.trials)
+      trials.push_back({{"name", trial.name}, {"flip", number_json(trial.flip)}});
+    const SaliencyTrial& best = found.trials[found.best];
+    session.report["saliency"] = {
+        {"chosen", best.name}, {"seconds", found.seconds}, {"trials", std::move(trials)}};
+    chosen_ = fmt::format("saliency {} (FLIP {:.4f}, none {:.4f}; {} tried in {})\n", best.name, best.flip,
+                          found.trials[0].flip, found.trials.size(), seconds_text(found.seconds));
+    return std::move(found.importance);
+  }
+
   int tell(Session& session, const Snapshot& before, const Snapshot& after,
            const SimplifyResult& result) const {
     const bool reached = reached_target(result, options_);
@@ -87,9 +130,9 @@ class Simplify : public Verb {
     session.report["before"] = to_json(before);
     session.report["after"] = to_json(after);
     session.report["result"] = result_json(result, reached);
-    session.print_summary(fmt::format("{} -> {}\n{}{}time     {}, peak memory {}\n", printable(input_),
+    session.print_summary(fmt::format("{} -> {}\n{}{}{}time     {}, peak memory {}\n", printable(input_),
                                       printable(output_), comparison_text(before, after),
-                                      result_text(result, options_), seconds_text(session.seconds()),
+                                      result_text(result, options_), chosen_, seconds_text(session.seconds()),
                                       bytes_text(peak_memory_bytes())));
     if (reached) return 0;
     if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");
@@ -99,7 +142,11 @@ class Simplify : public Verb {
   std::string input_;
   std::string output_;
   std::string importance_;
+  std::string chosen_;  ///< A line about what `auto` chose.
   bool allow_miss_ = false;
+  SaliencySource saliency_ = SaliencySource::none;
+  SaliencyOptions saliency_options_;
+  SalientOptions salient_options_;
   SimplifyOptions options_;
   ReadOptions read_options_;
   WriteOptions write_options_;

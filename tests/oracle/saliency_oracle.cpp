@@ -7,8 +7,8 @@
 
 namespace fovea::test {
 
-VertexField gaussian_average(const VertexField& field, double sigma, double cutoff,
-                             const Distance& distance, const VertexField& weights) {
+VertexField gaussian_average(const VertexField& field, double sigma, double cutoff, const Distance& distance,
+                             const VertexField& weights) {
   VertexField result(field.size());
   for (std::uint32_t v = 0; v < field.size(); ++v) {
     double sum = 0, total = 0;
@@ -53,8 +53,7 @@ VertexField window_average(const VertexField& field, const Surface& surface, dou
     };
     for (std::uint32_t x = 0; x < count; ++x) {
       const bool inside = length(surface.position(x) - p) <= radius;
-      if (inside || ring[v].contains(x))
-        add(surface.position(x), static_cast<double>(field.values()[x]));
+      if (inside || ring[v].contains(x)) add(surface.position(x), static_cast<double>(field.values()[x]));
       if (inside || !ring[v].contains(x)) continue;
       const Vec3d q = surface.position(x), crossing = p + normalized(q - p) * radius;
       std::vector<std::uint32_t> around{v, x};

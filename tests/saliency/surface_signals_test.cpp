@@ -494,24 +494,6 @@ TEST(SurfaceSignals, TheSameBitsForAnyNumberOfThreads) {
   expect_equal(signals(model, {}, 1), signals(model, {}, 3));
 }
 
-/// Averages over neighbourhoods in which vertices count by their texels. [#radii][#V]
-std::vector<VertexField> averages_by_texels(const Surface& surface, const Adjacency& adjacency,
-                                            const VertexField& signal, const VertexField& texels,
-                                            const std::vector<double>& radii) {
-  const Context context;
-  const auto averages = [&](const VertexField& field) {
-    return gaussian_averages(surface, adjacency, field, radii, 1, DistanceKind::euclidean, context);
-  };
-  VertexField product = signal;
-  for (std::size_t v = 0; v < product.size(); ++v) product.values()[v] *= texels.values()[v];
-  std::vector<VertexField> result = averages(product);
-  const std::vector<VertexField> weights = averages(texels);
-  for (std::size_t l = 0; l < radii.size(); ++l) {
-    for (std::size_t v = 0; v < product.size(); ++v) result[l].values()[v] /= weights[l].values()[v];
-  }
-  return result;
-}
-
 /// Expects that averages over neighbourhoods of radii 2^l, l = 1 … 4, times that of a mean triangle order
 /// vertices as texels do that are gathered one by one. At `samples` vertices; for the first mesh of a model,
 /// which has one texture.
@@ -539,7 +521,8 @@ void expect_the_order_of_gathered_texels(const Model& model, int samples) {
   std::array<std::vector<VertexField>, 3> fast;
   const VertexField* const fields[] = {&found.intensity, &found.opponency, &found.entropy};
   for (std::size_t k = 0; k < 3; ++k)
-    fast[k] = averages_by_texels(surface, adjacency, *fields[k], found.texels, radii);
+    fast[k] = gaussian_averages(surface, adjacency, {fields[k], 1}, radii,
+                                {DistanceKind::euclidean, 1, VertexWeight::one}, context, found.texels)[0];
   for (std::size_t l = 0; l < radii.size(); ++l) {
     Random random(1);
     std::array<std::vector<double>, 3> gathered, averaged;

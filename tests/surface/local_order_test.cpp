@@ -73,6 +73,7 @@ TEST(LocalOrder, ReorderedSurfacesAreTheSame) {
   VertexField x(local.positions.size());
   for (std::size_t v = 0; v < x.size(); ++v) x.values()[v] = local.positions[v].x;
   const VertexField own = in_own_order(x, order);
+  EXPECT_EQ(in_order(own, order), x);
   for (std::size_t v = 0; v < x.size(); ++v) EXPECT_EQ(own.values()[v], surface.positions[v].x);
   for (std::size_t f = 0; f < local.triangles.size(); ++f) {
     for (std::size_t k = 0; k < 3; ++k) {

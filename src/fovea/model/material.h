@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -36,6 +37,16 @@ struct TextureTransform {
   Vec2d scale{1, 1};
   friend bool operator==(const TextureTransform&, const TextureTransform&) = default;
 };
+
+/// The same as a matrix: uv' = u · uv.x + v · uv.y + offset.
+struct UvMatrix {
+  Vec2d u{1, 0}, v{0, 1}, offset{0, 0};
+  Vec2d operator()(double x, double y) const { return u * x + v * y + offset; }
+};
+inline UvMatrix matrix(const TextureTransform& t) {
+  const double c = std::cos(t.rotation_rad), s = std::sin(t.rotation_rad);
+  return {{c * t.scale.x, -s * t.scale.x}, {s * t.scale.y, c * t.scale.y}, t.offset};
+}
 
 /// A material's use of a texture.
 struct TextureRef {

@@ -49,14 +49,13 @@ class SceneImages {
 
  private:
   static void set_transform(SceneTexture& texture, const TextureTransform& t) {
-    // As the extension gives the matrix: offset · rotation · scale.
-    const double c = std::cos(t.rotation_rad), s = std::sin(t.rotation_rad);
-    texture.xx = static_cast<float>(c * t.scale.x);
-    texture.xy = static_cast<float>(s * t.scale.y);
-    texture.x = static_cast<float>(t.offset.x);
-    texture.yx = static_cast<float>(-s * t.scale.x);
-    texture.yy = static_cast<float>(c * t.scale.y);
-    texture.y = static_cast<float>(t.offset.y);
+    const UvMatrix m = matrix(t);
+    texture.xx = static_cast<float>(m.u.x);
+    texture.xy = static_cast<float>(m.v.x);
+    texture.x = static_cast<float>(m.offset.x);
+    texture.yx = static_cast<float>(m.u.y);
+    texture.yy = static_cast<float>(m.v.y);
+    texture.y = static_cast<float>(m.offset.y);
   }
 
   static std::shared_ptr<const MipMap> find(const RenderScene& scene, const SceneImage& wanted) {
@@ -162,7 +161,8 @@ RenderScene make_render_scene(const Model& model, const Pose& pose, Context& con
                               const RenderScene* other) {
   RenderScene scene;
   SceneImages images(model);
-  for (const Material& material : model.materials) scene.materials.push_back(scene_material(material, images));
+  for (const Material& material : model.materials)
+    scene.materials.push_back(scene_material(material, images));
   scene.materials.push_back(scene_material(Material{}, images));
   scene.images = images.make(context, other);
   finish_textures(scene);

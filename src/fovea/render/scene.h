@@ -17,7 +17,7 @@ namespace fovea {
 /// A texture as a material uses it, ready to be looked up.
 struct SceneTexture {
   int image = -1;  ///< Index into RenderScene::images.
-  int look = -1;     ///< The same for textures that are looked up with the same footprint.
+  int look = -1;   ///< The same for textures that are looked up with the same footprint.
   int uv_set = 0;
   Sampler sampler;
   /// uv' = (xx u + xy v + x, yx u + yy v + y), from KHR_texture_transform.
@@ -72,8 +72,8 @@ struct RenderScene {
 };
 
 /// Poses all instances and decodes the images in parallel. Images that cannot be decoded (KTX2, damaged)
-/// count as absent and are reported ("image-not-shown"). Images that `other` has decoded already are shared with
-/// it. Throws Error(limit) beyond 2³² − 1 triangles.
+/// count as absent and are reported ("image-not-shown"). Images that `other` has decoded already are shared
+/// with it. Throws Error(limit) beyond 2³² − 1 triangles.
 RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context,
                               const RenderScene* other = nullptr);
 

@@ -9,13 +9,13 @@ std::vector<std::vector<VertexField>> center_surround(const Surface& surface, co
                                                       std::span<const VertexField> signals,
                                                       std::span<const ScalePair> pairs,
                                                       const Neighborhood& neighborhood,
-                                                      const Context& context,
-                                                      const VertexField& weights) {
+                                                      const Context& context, const VertexField& weights) {
   std::vector<double> widths;
   for (const ScalePair& pair : pairs) widths.insert(widths.end(), {pair.center, pair.surround});
   std::sort(widths.begin(), widths.end());
   widths.erase(std::unique(widths.begin(), widths.end()), widths.end());
-  const auto averages = gaussian_averages(surface, adjacency, signals, widths, neighborhood, context, weights);
+  const auto averages =
+      gaussian_averages(surface, adjacency, signals, widths, neighborhood, context, weights);
   const auto number = [&](double width) {
     return static_cast<std::size_t>(std::lower_bound(widths.begin(), widths.end(), width) - widths.begin());
   };

@@ -18,7 +18,8 @@ struct MeshSaliencyOptions {
 /// As published: straight distances, cut off at two widths (Lee, Varshney, Jacobs 2005) ...
 inline constexpr MeshSaliencyOptions kLeeSaliency{{DistanceKind::euclidean, 2, VertexWeight::one}, 0.003};
 /// ... and exact geodesic ones, cut off at one (Munaretti 2007).
-inline constexpr MeshSaliencyOptions kMunarettiSaliency{{DistanceKind::geodesic, 1, VertexWeight::one}, 0.003};
+inline constexpr MeshSaliencyOptions kMunarettiSaliency{{DistanceKind::geodesic, 1, VertexWeight::one},
+                                                        0.003};
 
 /// Where a surface stands out by its shape, with what that was made of.
 struct MeshSaliency {

@@ -14,6 +14,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/saliency/material_texels.h"
+#include "fovea/saliency/uv_map.h"
 #include "fovea/surface/surface.h"
 
 namespace fovea {
@@ -22,8 +23,6 @@ namespace {
 
 constexpr std::size_t kFaceGrain = 1 << 9;
 constexpr std::size_t kVertexGrain = 1 << 12;
-/// Beyond that floats know little of where in a texel they are.
-constexpr double kMostTurns = 1e6;
 /// Texels of one texture that triangles look at.
 constexpr double kMostLooks = 1 << 25;
 /// Triangles have no fewer texels than this part of what others of their area have: a texture of a few
@@ -79,35 +78,6 @@ bool is_wanted(Purpose purpose, const SurfaceSignalOptions& options) {
   return is_wanted(first_signal(purpose), options) ||
          (purpose == Purpose::metallic_roughness && options.metalness);
 }
-
-/// Where a material finds its texture: uv' = matrix · uv + offset.
-struct UvMap {
-  const AttributeLayer* layer = nullptr;
-  Vec2d u{1, 0}, v{0, 1}, offset{0, 0};  // columns of the matrix
-
-  UvMap(const TriMesh& mesh, const TextureRef& ref) : layer(mesh.find(Semantic::uv, ref.uv_set)) {
-    if (!ref.transform) return;
-    const TextureTransform& t = *ref.transform;
-    const double c = std::cos(t.rotation_rad), s = std::sin(t.rotation_rad);
-    u = {c * t.scale.x, -s * t.scale.x};
-    v = {s * t.scale.y, c * t.scale.y};
-    offset = t.offset;
-  }
-
-  /// The triangle in the texture; none if it has no place there.
-  std::optional<std::array<Vec2d, 3>> triangle(std::uint32_t face) const {
-    std::array<Vec2d, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const ValueId id = layer->corner_value[std::size_t{3} * face + k];
-      if (!id.valid()) return {};
-      const float* const uv = layer->value(id);
-      const Vec2d at = u * static_cast<double>(uv[0]) + v * static_cast<double>(uv[1]) + offset;
-      if (!(std::abs(at.x) <= kMostTurns && std::abs(at.y) <= kMostTurns)) return {};
-      corners[k] = at;
-    }
-    return corners;
-  }
-};
 
 /// A part of a mesh that uses a source.
 struct Use {

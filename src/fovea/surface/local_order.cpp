@@ -113,6 +113,12 @@ Surface reordered(const Surface& surface, const LocalOrder& order) {
   return result;
 }
 
+VertexField in_order(const VertexField& field, const LocalOrder& order) {
+  VertexField result(field.size());
+  for (std::size_t i = 0; i < field.size(); ++i) result.values()[i] = field[order.vertices[i]];
+  return result;
+}
+
 VertexField in_own_order(const VertexField& field, const LocalOrder& order) {
   VertexField result(field.size());
   for (std::size_t i = 0; i < field.size(); ++i) result[order.vertices[i]] = field.values()[i];

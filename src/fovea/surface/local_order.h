@@ -22,6 +22,8 @@ LocalOrder local_order(const Surface& surface);
 
 /// The surface with its vertices and triangles in that order. O(#V + #F).
 Surface reordered(const Surface& surface, const LocalOrder& order);
+/// A field of the surface as one of the reordered surface.
+VertexField in_order(const VertexField& field, const LocalOrder& order);
 /// A field of the reordered surface as one of the surface itself.
 VertexField in_own_order(const VertexField& field, const LocalOrder& order);
 

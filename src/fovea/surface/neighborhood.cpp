@@ -310,8 +310,7 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
                                                         std::span<const VertexField> fields,
                                                         std::span<const double> sigmas,
                                                         const Neighborhood& neighborhood,
-                                                        const Context& context,
-                                                        const VertexField& weights) {
+                                                        const Context& context, const VertexField& weights) {
   const double cutoff = neighborhood.cutoff;
   const bool rising = std::is_sorted(sigmas.begin(), sigmas.end());
   if (sigmas.empty() || !rising || !(sigmas.front() > 0) || !(cutoff > 0))

@@ -1,0 +1,280 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "fovea/io/field_file.h"
+#include "fovea/io/image_file.h"
+#include "fovea/io/read.h"
+#include "fovea/io/write.h"
+#include "fovea/render/heat_map.h"
+#include "fovea/render/render.h"
+#include "fovea/saliency/model_saliency.h"
+#include "fovea/saliency/texture_space.h"
+#include "fovea/surface/curvature.h"
+#include "fovea/surface/scene_surface.h"
+#include "fovea/surface/statistics.h"
+#include "report.h"
+#include "sheet.h"
+#include "text.h"
+#include "verb.h"
+
+namespace fovea::cli {
+
+namespace {
+
+/// What is written of a map. The first leaves it to the extension of the output.
+enum class OutputKind { by_extension, heat, attribute, field, picture, texture };
+
+constexpr const char* kWhole = "saliency";
+constexpr const char* kAll = "all";
+
+class Saliency : public Verb {
+ public:
+  VerbText text() const override {
+    return {
+        "saliency",
+        "say where people look",
+        "Finds how much each part of a model draws the eye, from its shape, its texture and how it stands "
+        "before people, and writes that as a heat map, pictures, numbers or a vertex attribute. Several "
+        "files are poses of one model.",
+        {{"fovea saliency helmet.glb -o heat.glb", "A heat map for any glTF viewer."},
+         {"fovea saliency helmet.glb -o heat.png", "A sheet of pictures of it."},
+         {"fovea saliency scan.ply -o scan.npy --preset lee", "One number per vertex of the file."},
+         {"fovea saliency helmet.glb -o maps.png --map all",
+          "All that it was made of: maps-geometry.png, ..."},
+         {"fovea saliency fox.glb -o fox-heat.glb --key-poses 8", "Over the poses of its animations."},
+         {"fovea saliency helmet.glb -o marked.glb --as attribute",
+          "The model with the vertex attribute _SALIENCY."}}};
+  }
+
+  void declare(Arguments& arguments) override {
+    arguments.add({"MODEL", "A model file; further files are other poses of it.", nullptr, true, &inputs_});
+    arguments.add("Saliency", describe(options_));
+    arguments.add(
+        "Output",
+        {describe_output(output_),
+         {"as",
+          "What to write: a heat map (a model), the model with a vertex attribute, a field of numbers, "
+          "pictures, "
+          "or a map in the space of its texture. By itself as the extension says: .png, .jpg and .webp are "
+          "pictures; .npy, .csv and .txt fields; others heat maps.",
+          choice(kind_, {"extension", "heat", "attribute", "field", "picture", "texture"}), ""},
+         {"map",
+          "Which map to write: saliency, or one that it is made of, or \"all\" for a file of each. --json "
+          "lists them.",
+          &map_, "name"},
+         describe_force(force_)});
+    arguments.add("Picture", describe(view_options_));
+    arguments.add("Picture", {{"size", "Pixels along each side of a view.", &size_, "pixels", 16, 8192},
+                              {"columns", "Views side by side; 0 makes the sheet about square.", &columns_,
+                               "", 0, 4096}});
+    arguments.add("Limits", describe(read_options_));
+  }
+
+  int run(Session& session) override {
+    check_request();
+    const Model model =
+        session.phase("read", [&] { return read_model(inputs_[0], read_options_, session.context); });
+    const std::vector<Model> poses = session.phase("poses", [&] { return read_poses(session.context); });
+    ModelSaliency found =
+        session.phase("saliency", [&] { return model_saliency(model, options_, session.context, poses); });
+    found.maps.push_back({kWhole, found.saliency});
+    const Json statistics =
+        session.phase("statistics", [&] { return statistics_json(model, found, session); });
+    std::vector<std::string> written;
+    session.phase("write", [&] {
+      for (const SaliencyMap* map : chosen(found)) write(model, *map, session, written);
+    });
+    tell(session, found, statistics, written);
+    return 0;
+  }
+
+ private:
+  void check_request() {
+    for (const std::string& input : inputs_) check_input(input);
+    if (kind_ == OutputKind::by_extension) kind_ = kind_by_extension();
+    check_output(output_, inputs_, force_, output_check());
+  }
+
+  OutputKind kind_by_extension() const {
+    const std::string extension = std::filesystem::path(output_).extension().string();
+    const auto is = [&](std::initializer_list<const char*> names) {
+      return std::find(names.begin(), names.end(), extension) != names.end();
+    };
+    if (is({".png", ".jpg", ".jpeg", ".webp"})) return OutputKind::picture;
+    return is({".npy", ".csv", ".txt"}) ? OutputKind::field : OutputKind::heat;
+  }
+
+  void (*output_check() const)(const std::filesystem::path&, bool) {
+    switch (kind_) {
+      case OutputKind::field: return check_field_output;
+      case OutputKind::picture:
+      case OutputKind::texture: return check_image_output;
+      default: return fovea::check_output;
+    }
+  }
+
+  std::vector<Model> read_poses(Context& context) const {
+    std::vector<Model> poses;
+    for (std::size_t i = 1; i < inputs_.size(); ++i)
+      poses.push_back(read_model(inputs_[i], read_options_, context));
+    return poses;
+  }
+
+  std::vector<const SaliencyMap*> chosen(const ModelSaliency& found) const {
+    std::vector<const SaliencyMap*> maps;
+    std::vector<std::string> names;
+    for (const SaliencyMap& map : found.maps) {
+      names.push_back(map.name);
+      if (map_ == kAll || map_ == map.name) maps.push_back(&map);
+    }
+    if (maps.empty()) {
+      throw Error(ErrorKind::usage, fmt::format("there is no map \"{}\"", printable(map_)), "--map",
+                  fmt::format("there are: {}, {}", kAll, fmt::join(names, ", ")));
+    }
+    return maps;
+  }
+
+  /// "out.png", or "out-geometry.png" where there are several files.
+  std::string path_of(const std::string& suffix) const {
+    const std::filesystem::path path(output_);
+    const std::string name = path.stem().string() + "-" + suffix + path.extension().string();
+    return suffix.empty() ? output_ : (path.parent_path() / name).string();
+  }
+
+  void write(const Model& model, const SaliencyMap& map, Session& session,
+             std::vector<std::string>& written) const {
+    const std::string path = path_of(map_ == kAll && map.name != kWhole ? map.name : "");
+    WriteOptions options;
+    options.force = force_;
+    switch (kind_) {
+      case OutputKind::field:
+        write_field(path, field_in_source_order(model, map.fields), map.name, force_);
+        break;
+      case OutputKind::picture: write_image(picture(model, map, session.context), path, force_); break;
+      case OutputKind::texture: return write_textures(model, map, path, session, written);
+      case OutputKind::attribute:
+        write_model(with_attribute(model, map.fields, attribute_name(map.name)), path, options,
+                    session.context);
+        break;
+      default: write_model(heat_map(model, scaled(map.fields)), path, options, session.context);
+    }
+    written.push_back(path);
+  }
+
+  /// "_SALIENCY", "_CURVATURE_CONTRAST_1".
+  static std::string attribute_name(const std::string& map) {
+    std::string name = "_" + map;
+    for (char& c : name) c = c == '-' ? '_' : static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    return name;
+  }
+
+  void write_textures(const Model& model, const SaliencyMap& map, const std::string& path, Session& session,
+                      std::vector<std::string>& written) const {
+    const std::vector<TextureSpaceMap> textures =
+        texture_space_maps(model, scaled(map.fields), session.context);
+    for (const TextureSpaceMap& texture : textures) {
+      const std::filesystem::path p(path);
+      const std::string own = textures.size() == 1
+                                  ? path
+                                  : (p.parent_path() / fmt::format("{}-image{}{}", p.stem().string(),
+                                                                   texture.image, p.extension().string()))
+                                        .string();
+      write_image(texture.map, own, force_);
+      written.push_back(own);
+    }
+  }
+
+  /// To [0, 1] over all meshes.
+  static std::vector<VertexField> scaled(std::vector<VertexField> fields) {
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    for (const VertexField& field : fields) {
+      for (const float x : field.values()) {
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+    }
+    for (VertexField& field : fields) {
+      for (float& x : field.values()) x = high > low ? (x - low) / (high - low) : 0.0f;
+    }
+    return fields;
+  }
+
+  Image8 picture(const Model& model, const SaliencyMap& map, Context& context) const {
+    RenderOptions options;
+    options.pass = Pass::field;
+    options.width = options.height = size_;
+    const Pose pose = pose_of(model, options_.pose);
+    const RenderScene scene = make_render_scene(model, pose, context);
+    const std::vector<View> views = views_of(view_options_, model, pose, scene);
+    Image8 sheet = empty_sheet(views.size(), columns_, options);
+    arrange(render_views(scene, views, options, context, scaled(map.fields)), sheet);
+    return sheet;
+  }
+
+  Json statistics_json(const Model& model, const ModelSaliency& found, Session& session) const {
+    const SceneSurface scene = scene_surface(model, pose_of(model, options_.pose));
+    const VertexField areas =
+        vertex_areas(scene.surface, Adjacency(scene.surface, session.context), session.context);
+    Json json = Json::object();
+    for (const SaliencyMap& map : found.maps) {
+      const VertexField field = joined(map.fields);
+      const Statistics s = statistics(field.values(), areas.values());
+      json[map.name] = {{"min", number_json(s.least)},
+                        {"max", number_json(s.greatest)},
+                        {"mean", number_json(s.mean)},
+                        {"deviation", number_json(s.deviation)},
+                        {"quarter", number_json(s.quarter)},
+                        {"median", number_json(s.median)},
+                        {"three_quarters", number_json(s.three_quarters)}};
+    }
+    return json;
+  }
+
+  void tell(Session& session, const ModelSaliency& found, const Json& statistics,
+            const std::vector<std::string>& written) const {
+    session.report["inputs"] = inputs_;
+    session.report["outputs"] = Json::array();
+    for (const std::string& path : written) session.report["outputs"].push_back({{"path", path}});
+    session.report["textured"] = found.textured;
+    session.report["poses"] = found.poses;
+    session.report["maps"] = statistics;
+    TextTable table("lrrrr");
+    table.row({"map", "mean", "deviation", "median", "range"});
+    for (const auto& [name, s] : statistics.items()) {
+      if (name.find("contrast") != std::string::npos && !session.verbose()) continue;
+      table.row({name, number_text(s["mean"]), number_text(s["deviation"]), number_text(s["median"]),
+                 number_text(s["min"]) + " … " + number_text(s["max"])});
+    }
+    session.print_summary(
+        fmt::format("{} -> {}\n{}{}, {}, peak memory {}\n", printable(inputs_[0]),
+                    written.size() == 1 ? printable(written[0]) : plural(written.size(), "file", "files"),
+                    table.text(0), plural(found.poses.size(), "pose", "poses"),
+                    seconds_text(session.seconds()), bytes_text(peak_memory_bytes())));
+  }
+
+  static ViewOptions montage_views() {
+    ViewOptions views;
+    views.set = ViewSet::orbit;
+    views.count = 6;
+    return views;
+  }
+
+  std::vector<std::string> inputs_;
+  std::string output_;
+  std::string map_ = kWhole;
+  OutputKind kind_ = OutputKind::by_extension;
+  bool force_ = false;
+  std::int64_t size_ = 384;
+  std::int64_t columns_ = 0;
+  SaliencyOptions options_;
+  ViewOptions view_options_ = montage_views();
+  ReadOptions read_options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_saliency() { return std::make_unique<Saliency>(); }
+
+}  // namespace fovea::cli

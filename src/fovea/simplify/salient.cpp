@@ -1,0 +1,87 @@
+#include "fovea/simplify/salient.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/error.h"
+#include "fovea/surface/curvature.h"
+#include "fovea/surface/pose.h"
+#include "fovea/surface/scene_surface.h"
+#include "fovea/surface/statistics.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr double kThreshold = 0.3;     // η, α: percentile
+constexpr double kYangAmplifier = 20;  // κ
+constexpr double kYangExponent = 3;    // ζ
+constexpr double kLeeAmplifier = 100;  // λ
+constexpr double kLeastSaliency = 1e-3;
+
+/// The paper's weights, before they are scaled.
+std::vector<double> weights(std::span<const float> saliency, float threshold, SaliencyWeighting weighting) {
+  const bool yang = weighting == SaliencyWeighting::yang;
+  const double amplifier = yang ? kYangAmplifier : kLeeAmplifier;
+  std::vector<double> amplified;
+  double highest = 0;
+  for (const float s : saliency) {
+    const double x = std::max(static_cast<double>(s), kLeastSaliency);
+    amplified.push_back(s >= threshold ? amplifier * x : x);
+    highest = std::max(highest, amplified.back());
+  }
+  if (yang) {
+    for (double& w : amplified) w = 1 + std::pow(w / highest, kYangExponent);
+  }
+  return amplified;
+}
+
+}  // namespace
+
+OptionList describe(SalientOptions& o) {
+  return {
+      {"saliency-weighting",
+       "How saliency weighs errors: gently and at the peaks (Yang et al.), or all but the dullest third a "
+       "hundred times (Lee et al.).",
+       choice(o.weighting, {"yang", "lee"}), ""},
+      {"saliency-strength", "Power that these weights are raised to.", &o.strength, "", 0, 10}};
+}
+
+Importance salient_importance(const Model& model, const std::vector<VertexField>& saliency,
+                              const SalientOptions& options, const Context& context) {
+  const SceneSurface scene = scene_surface(model, rest_pose(model));
+  const VertexField all = joined(saliency);
+  if (all.size() != scene.surface.positions.size())
+    throw Error(ErrorKind::usage, "saliency is not of this model's meshes", "saliency");
+  const VertexField areas = vertex_areas(scene.surface, Adjacency(scene.surface, context), context);
+  const double share[] = {kThreshold};
+  const float threshold = percentiles(all.values(), areas.values(), share)[0];
+  const std::vector<double> raw = weights(all.values(), threshold, options.weighting);
+  VertexField field(all.size());
+  double sum = 0, area = 0;
+  for (std::size_t v = 0; v < raw.size(); ++v) {
+    const double w = std::pow(raw[v], options.strength), a = static_cast<double>(areas.values()[v]);
+    field.values()[v] = static_cast<float>(w);
+    sum += a * w;
+    area += a;
+  }
+  const auto scale = static_cast<float>(sum > 0 ? area / sum : 1);
+  for (float& w : field.values()) w *= scale;
+  return split(scene, field);
+}
+
+Importance product(const Importance& a, const Importance& b) {
+  if (a.empty() || b.empty()) return a.empty() ? b : a;
+  Importance result = a;
+  for (std::size_t m = 0; m < result.size(); ++m) {
+    if (b[m].empty()) continue;
+    if (result[m].empty()) {
+      result[m] = b[m];
+      continue;
+    }
+    for (std::size_t v = 0; v < result[m].size(); ++v) result[m].values()[v] *= b[m].values()[v];
+  }
+  return result;
+}
+
+}  // namespace fovea
