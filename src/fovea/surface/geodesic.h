@@ -83,6 +83,11 @@ class GeodesicSearch {
     Vec2d source;               ///< y < 0.
     double before = 0;          ///< Distance to that point.
   };
+  struct VertexState {
+    double distance = 0;  ///< Where `seen` is the search's turn.
+    std::uint32_t seen = 0;
+    std::uint32_t number = 0;  ///< In what was reached.
+  };
   // What waits, by the least distance that it can give: nearest first but for the width of a bucket, as the
   // order costs work and no exactness.
   static constexpr std::size_t kBuckets = 64;
@@ -107,10 +112,8 @@ class GeodesicSearch {
 
   const GeodesicSurface& surface_;
   double radius_ = 0, buckets_per_length_ = 0;
-  std::vector<double> distance_;       // [#V], where `seen_` is `turn_`
+  std::vector<VertexState> vertices_;  // [#V]
   std::vector<double> backward_;       // [#V], the direction in the fan that its shortest path comes from
-  std::vector<std::uint32_t> seen_;    // [#V]
-  std::vector<std::uint32_t> number_;  // [#V], in `reached_`
   std::uint32_t turn_ = 0;
   std::vector<char> waiting_;  // [#V], to spread
   std::array<Bucket, kBuckets> buckets_;
