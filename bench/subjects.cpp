@@ -152,6 +152,14 @@ std::vector<Subject> render_subjects() {
                    "scans/dragon.ply"});
 }
 
+std::vector<Subject> textured_subjects() {
+  return subjects({"textured/DamagedHelmet.glb", "textured/WaterBottle.glb",
+                   "textured/MaterialsVariantsShoe.glb", "textured/YcbBanana.glb", "textured/SheenChair.glb",
+                   "textured/Duck.glb", "textured/BoomBox.glb", "textured/ExplodingBarrel.glb",
+                   "textured/AntiqueCameraBody.glb", "textured/IridescenceLamp.glb",
+                   "textured/AcousticGuitar.glb", "textured/GlamVelvetSofa.glb"});
+}
+
 Subject noise_sphere(std::size_t triangles) {
   return {"noise sphere", [triangles] { return make_noise_sphere(triangles); }};
 }

@@ -26,6 +26,9 @@ std::vector<Subject> speed_subjects();
 /// What is drawn: textured models and a scan of the data folder, or Fovea's own samples.
 std::vector<Subject> render_subjects();
 
+/// Textured models of many kinds of the data folder, or Fovea's own samples.
+std::vector<Subject> textured_subjects();
+
 /// A closed, bumpy sphere of about `triangles` triangles (position only) for runs of any size.
 Subject noise_sphere(std::size_t triangles);
 

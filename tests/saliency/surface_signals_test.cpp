@@ -521,8 +521,9 @@ void expect_the_order_of_gathered_texels(const Model& model, int samples) {
   std::array<std::vector<VertexField>, 3> fast;
   const VertexField* const fields[] = {&found.intensity, &found.opponency, &found.entropy};
   for (std::size_t k = 0; k < 3; ++k)
-    fast[k] = gaussian_averages(surface, adjacency, {fields[k], 1}, radii,
-                                {DistanceKind::euclidean, 1, VertexWeight::one}, context, found.texels)[0];
+    fast[k] =
+        gaussian_averages(surface, adjacency, {fields[k], 1}, radii,
+                          {DistanceKind::euclidean, 1, VertexWeight::one}, context, {&found.texels, 1})[0];
   for (std::size_t l = 0; l < radii.size(); ++l) {
     Random random(1);
     std::array<std::vector<double>, 3> gathered, averaged;

@@ -214,7 +214,7 @@ TEST(Spheres, LieAHundredthOfTheRadiusApartMorphedOrNot) {
   // No vertex lies exactly on the axis (41 quads are odd): a quarter of a quad away the sphere has
   // receded by less than 4e-4 on either side.
   EXPECT_NEAR(right - left, 0.01, 1e-3);
-  EXPECT_GE(right_morphed, right - 1e-6);
+  EXPECT_GE(right_morphed, right - 1e-3);  // bumps rise to less than half of the room before them
   EXPECT_GT(moved, 0.15);
 }
 

@@ -101,10 +101,17 @@ TEST(Neighborhood, GivenWeightsTakeTheirPlace) {
   const double sigmas[] = {0.05, 0.1};
   for (const DistanceKind kind : kKinds) {
     const auto average = [&](VertexWeight weight, const VertexField& weights) {
-      return gaussian_averages(surface, adjacency, {&field, 1}, sigmas, {kind, 2, weight}, context, weights);
+      return gaussian_averages(surface, adjacency, {&field, 1}, sigmas, {kind, 2, weight}, context,
+                               {&weights, 1});
     };
     const VertexField ones(field.size(), 1.0f);
     EXPECT_EQ(average(VertexWeight::area, ones), average(VertexWeight::one, {}));
+    // Each field has its own.
+    const VertexField both[] = {field, field}, each[] = {{}, ones};
+    const auto together =
+        gaussian_averages(surface, adjacency, both, sigmas, {kind, 2, VertexWeight::area}, context, each);
+    EXPECT_EQ(together[0], average(VertexWeight::area, {})[0]);
+    EXPECT_EQ(together[1], average(VertexWeight::one, {})[0]);
     if (kind == DistanceKind::diffusion) continue;  // it has its own areas where vertices are this uneven
     // Thrice the area is the area, but for rounding.
     VertexField areas = vertex_areas(surface, adjacency, context);

@@ -9,7 +9,8 @@ std::vector<std::vector<VertexField>> center_surround(const Surface& surface, co
                                                       std::span<const VertexField> signals,
                                                       std::span<const ScalePair> pairs,
                                                       const Neighborhood& neighborhood,
-                                                      const Context& context, const VertexField& weights) {
+                                                      const Context& context,
+                                                      std::span<const VertexField> weights) {
   std::vector<double> widths;
   for (const ScalePair& pair : pairs) widths.insert(widths.end(), {pair.center, pair.surround});
   std::sort(widths.begin(), widths.end());

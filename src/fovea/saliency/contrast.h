@@ -25,7 +25,7 @@ std::vector<std::vector<VertexField>> center_surround(const Surface& surface, co
                                                       std::span<const ScalePair> pairs,
                                                       const Neighborhood& neighborhood,
                                                       const Context& context,
-                                                      const VertexField& weights = {});
+                                                      std::span<const VertexField> weights = {});
 
 /// Promotes fields with few strong peaks (Itti, Koch, Niebur 1998; on meshes Lee et al. 2005): scales the
 /// field to [0, 1] and multiplies it by (M − m)², with M = 1 its maximum and m the mean of the other local

@@ -220,18 +220,13 @@ class Maker {
   /// Curvature, if it is there, is the first of the signals; the others are of textures.
   std::vector<std::vector<VertexField>> contrasts_of(std::span<const VertexField> signals,
                                                      std::span<const ScalePair> pairs) const {
-    const auto run = [&](std::span<const VertexField> some, const VertexField& weights) {
-      return center_surround(surface_, *adjacency_, some, pairs, recipe_.neighborhood, context_, weights);
-    };
-    if (recipe_.neighborhood.weight == VertexWeight::area || texels_.empty()) return run(signals, {});
-    // As published each vertex counts alike, and each texel.
-    const std::size_t shapes = recipe_.geometry > 0 ? 1 : 0;
-    std::vector<std::vector<VertexField>> contrasts;
-    if (shapes > 0) contrasts = run(signals.subspan(0, shapes), {});
-    if (signals.size() > shapes) {
-      for (auto& contrast : run(signals.subspan(shapes), texels_)) contrasts.push_back(std::move(contrast));
+    // As published each vertex counts alike in averages of shape, and each texel in those of textures.
+    std::vector<VertexField> weights;
+    if (recipe_.neighborhood.weight == VertexWeight::one && !texels_.empty()) {
+      weights.assign(signals.size(), texels_);
+      if (recipe_.geometry > 0) weights[0] = {};
     }
-    return contrasts;
+    return center_surround(surface_, *adjacency_, signals, pairs, recipe_.neighborhood, context_, weights);
   }
 
   void read_materials(std::vector<std::string>& names, std::vector<VertexField>& signals) {

@@ -49,7 +49,7 @@ std::vector<Vec3d> bump_directions(int count, std::uint64_t seed) {
   return directions;
 }
 
-/// How far the right sphere swells in a direction; nothing where the other one is near.
+/// How far the right sphere swells in a direction: less than to the middle of the gap between both.
 double swelling(Vec3d d, const std::vector<Vec3d>& bumps) {
   constexpr double kHeight = 0.20 * kRadius, kWidth = 0.24;
   double sum = 0;
@@ -57,7 +57,8 @@ double swelling(Vec3d d, const std::vector<Vec3d>& bumps) {
     const double angle = std::acos(std::min(1.0, std::max(-1.0, dot(d, b)))) / kWidth;
     sum += std::exp(-angle * angle);
   }
-  return kHeight * sum * smooth_step(-0.72, -0.50, d.x);
+  const double free = kHeight * sum, room = 0.8 * kRadius * (1 + d.x);
+  return free * room / (free + room);
 }
 
 void add_bumps(SplitPart& part, Vec3d center, std::uint64_t seed) {

@@ -16,8 +16,9 @@ namespace fovea {
 
 namespace {
 
-/// Vertices whose neighbourhoods one thread finds together: each search has arrays of the size of the mesh.
-constexpr std::size_t kGrain = 1 << 12;
+/// Vertices whose neighbourhoods one thread finds together: few, as some meshes are a hundred times as dense
+/// in places, and not fewer, as a geodesic search has arrays of the size of the mesh.
+constexpr std::size_t kGrain = 1 << 9;
 /// More vertices to the area than this many times the mean, or fewer, are not told apart by heat.
 constexpr double kMostDensity = 100;
 
@@ -102,22 +103,29 @@ class Gaussian {
   std::vector<double> values_;
 };
 
-/// The fields at a vertex or between them.
-struct Sample {
-  double weight = 0;                 ///< What it counts for.
-  std::span<const double> weighted;  ///< [#fields], times that.
+/// What vertices count for: a few sets, and which of them each field is averaged by.
+struct Weights {
+  std::vector<VertexField> sets;
+  std::vector<std::size_t> set_of;  ///< [#fields]
 };
+
+/// The fields at a vertex or between vertices, each times its weight, then the weights. [#fields + #sets]
+using Sample = std::span<const double>;
 
 /// The averages at one vertex, of neighbours that come one by one.
 class Averager {
  public:
-  Averager(std::span<const double> sigmas, double cutoff, std::size_t fields)
-      : cutoff2_(cutoff * cutoff), fields_(fields), gaussian_(cutoff2_), sums_(sigmas.size() * (fields + 1)) {
+  Averager(std::span<const double> sigmas, double cutoff, const Weights& weights)
+      : cutoff2_(cutoff * cutoff),
+        weights_(weights),
+        width_(weights.set_of.size() + weights.sets.size()),
+        gaussian_(cutoff2_),
+        sums_(sigmas.size() * width_) {
     for (const double sigma : sigmas) precisions_.push_back(1 / (sigma * sigma));
   }
   void start() { std::fill(sums_.begin(), sums_.end(), 0); }
   /// To all scales that reach as far.
-  void add(double distance2, const Sample& sample) {
+  void add(double distance2, Sample sample) {
     for (std::size_t i = precisions_.size(); i > 0; --i) {
       const double x = distance2 * precisions_[i - 1];
       if (x > cutoff2_) return;  // nor the smaller ones
@@ -125,50 +133,51 @@ class Averager {
     }
   }
   /// To one scale, however far.
-  void add_beyond(std::size_t scale, double distance2, const Sample& sample) {
+  void add_beyond(std::size_t scale, double distance2, Sample sample) {
     add(scale, std::exp(-0.5 * distance2 * precisions_[scale]), sample);
   }
   double average(std::size_t field, std::size_t scale) const {
-    const double* const sums = sums_.data() + scale * (fields_ + 1);
-    return sums[field] / sums[fields_];
+    const double* const sums = sums_.data() + scale * width_;
+    return sums[field] / sums[weights_.set_of.size() + weights_.set_of[field]];
   }
 
  private:
-  void add(std::size_t scale, double weight, const Sample& sample) {
-    double* const sums = sums_.data() + scale * (fields_ + 1);
-    for (std::size_t f = 0; f < fields_; ++f) sums[f] += weight * sample.weighted[f];
-    sums[fields_] += weight * sample.weight;
+  void add(std::size_t scale, double weight, Sample sample) {
+    double* const sums = sums_.data() + scale * width_;
+    for (std::size_t i = 0; i < width_; ++i) sums[i] += weight * sample[i];
   }
 
   double cutoff2_;
-  std::size_t fields_;
+  const Weights& weights_;
+  std::size_t width_;
   Gaussian gaussian_;
   std::vector<double> precisions_;  // [#scales], 1 / σ²
-  std::vector<double> sums_;        // [#scales][#fields + 1], the last of the weights
+  std::vector<double> sums_;        // [#scales][#fields + #sets]
 };
 
-/// The fields at the vertices, side by side and times what each vertex counts for.
+/// The samples at the vertices.
 class Samples {
  public:
-  Samples(std::span<const VertexField> fields, VertexField weights)
-      : fields_(fields.size()), weights_(std::move(weights)) {
+  Samples(std::span<const VertexField> fields, const Weights& weights)
+      : width_(fields.size() + weights.sets.size()) {
+    const std::size_t count = weights.sets[0].size();
+    values_.reserve(count * width_);
     // What counts for nothing still counts where there is nothing else.
-    for (float& w : weights_.values()) w = std::max(w, std::numeric_limits<float>::min());
-    weighted_.reserve(weights_.size() * fields_);
-    for (std::size_t v = 0; v < weights_.size(); ++v) {
-      for (const VertexField& field : fields)
-        weighted_.push_back(weight(v) * static_cast<double>(field.values()[v]));
+    const auto weight = [&](std::size_t set, std::size_t v) {
+      return static_cast<double>(std::max(weights.sets[set].values()[v], std::numeric_limits<float>::min()));
+    };
+    for (std::size_t v = 0; v < count; ++v) {
+      for (std::size_t f = 0; f < fields.size(); ++f)
+        values_.push_back(weight(weights.set_of[f], v) * static_cast<double>(fields[f].values()[v]));
+      for (std::size_t set = 0; set < weights.sets.size(); ++set) values_.push_back(weight(set, v));
     }
   }
-  Sample operator[](std::size_t v) const { return {weight(v), {weighted_.data() + v * fields_, fields_}}; }
-  std::size_t field_count() const { return fields_; }
+  Sample operator[](std::size_t v) const { return {values_.data() + v * width_, width_}; }
+  std::size_t width() const { return width_; }
 
  private:
-  double weight(std::size_t v) const { return static_cast<double>(weights_.values()[v]); }
-
-  std::size_t fields_;
-  VertexField weights_;
-  std::vector<double> weighted_;  // [#V][#fields]
+  std::size_t width_;
+  std::vector<double> values_;  // [#V][#fields + #sets]
 };
 
 /// What the local filter window has beyond the sphere: the neighbours outside, and where the edges to them
@@ -177,7 +186,7 @@ class WindowRim {
  public:
   WindowRim(const Surface& surface, const Adjacency& adjacency, const Samples& samples,
             std::span<const double> sigmas, double cutoff)
-      : surface_(surface), adjacency_(adjacency), samples_(samples), mean_(samples.field_count()) {
+      : surface_(surface), adjacency_(adjacency), samples_(samples), mean_(samples.width()) {
     for (const double sigma : sigmas) radii_.push_back(cutoff * sigma);
     double sum = 0, count = 0;
     for (std::uint32_t v = 0; v < adjacency.vertex_count(); ++v) {
@@ -207,7 +216,7 @@ class WindowRim {
     const Vec3d p = surface_.position(v), q = surface_.position(w);
     const Vec3d straight = p + (q - p) * (radii_[scale] / length(q - p));
     std::fill(mean_.begin(), mean_.end(), 0);
-    double sum = 0, weight = 0;
+    double sum = 0;
     Vec3d point;
     const auto add = [&](std::uint32_t x) {
       const Vec3d at = surface_.position(x);
@@ -215,9 +224,8 @@ class WindowRim {
                                     length_squared(at - straight) / (mean_edge_ * mean_edge_));
       const Sample sample = samples_[x];
       sum += share;
-      weight += share * sample.weight;
       point = point + at * share;
-      for (std::size_t f = 0; f < mean_.size(); ++f) mean_[f] += share * sample.weighted[f];
+      for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i] += share * sample[i];
     };
     add(v);
     add(w);
@@ -229,7 +237,7 @@ class WindowRim {
     }
     if (!(sum > 0)) return;  // all are many edges away
     for (double& x : mean_) x /= sum;
-    averager.add_beyond(scale, length_squared(point / sum - p), {weight / sum, mean_});
+    averager.add_beyond(scale, length_squared(point / sum - p), mean_);
   }
 
   const Surface& surface_;
@@ -237,7 +245,7 @@ class WindowRim {
   const Samples& samples_;
   std::vector<double> radii_;
   double mean_edge_ = 1;
-  std::vector<double> mean_;  // [#fields], of the crossing at hand
+  std::vector<double> mean_;  // the sample at the crossing at hand
 };
 
 /// Part of σ² that a Gaussian over a surface keeps as its variance when it is cut off at c σ.
@@ -264,44 +272,60 @@ VertexField heat_densities(const VertexField& areas, const VertexField& weights)
   return densities;
 }
 
-/// `weights` empty: by area.
+/// An empty set of weights is the area that heat counts by itself.
 std::vector<std::vector<VertexField>> diffused(const Surface& surface, const Adjacency& adjacency,
                                                std::span<const VertexField> fields,
                                                std::span<const double> sigmas, double cutoff,
-                                               const VertexField& weights, const Context& context) {
+                                               const Weights& weights, const Context& context) {
   std::vector<double> times;
   for (const double sigma : sigmas) times.push_back(kept_variance(cutoff) * sigma * sigma / 2);
   const HeatFlow heat(surface, adjacency, context);
-  if (weights.empty()) return heat.run(fields, times, context);
   const VertexField& areas = heat.areas();
-  const VertexField density = heat_densities(areas, weights);
   std::vector<VertexField> dense(fields.begin(), fields.end());
-  for (VertexField& field : dense) {
-    for (std::size_t v = 0; v < field.size(); ++v) field.values()[v] *= density.values()[v];
+  std::vector<std::size_t> density_of(weights.sets.size(), 0);  // 0: none
+  for (std::size_t set = 0; set < weights.sets.size(); ++set) {
+    if (weights.sets[set].empty()) continue;
+    const VertexField density = heat_densities(areas, weights.sets[set]);
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      if (weights.set_of[f] != set) continue;
+      for (std::size_t v = 0; v < areas.size(); ++v) dense[f].values()[v] *= density.values()[v];
+    }
+    density_of[set] = dense.size();
+    dense.push_back(density);
   }
-  dense.push_back(density);
   std::vector<std::vector<VertexField>> results = heat.run(dense, times, context);
-  const std::vector<VertexField> densities = std::move(results.back());
-  results.pop_back();
-  for (std::size_t f = 0; f < results.size(); ++f) {
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const std::size_t density = density_of[weights.set_of[f]];
+    if (density == 0) continue;
     for (std::size_t i = 0; i < times.size(); ++i) {
       for (std::size_t v = 0; v < areas.size(); ++v) {
         float& x = results[f][i].values()[v];
-        x = areas.values()[v] > 0 ? x / densities[i].values()[v] : fields[f].values()[v];
+        x = areas.values()[v] > 0 ? x / results[density][i].values()[v] : fields[f].values()[v];
       }
     }
   }
+  results.resize(fields.size());
   return results;
 }
 
-/// What each vertex counts for; empty if that is the area that heat counts.
-VertexField vertex_weights(const Surface& surface, const Adjacency& adjacency,
-                           const Neighborhood& neighborhood, const VertexField& weights,
-                           const Context& context) {
-  if (!weights.empty()) return weights;
+/// What vertices count for if nothing else is given; empty if that is the area that heat counts.
+VertexField own_weights(const Surface& surface, const Adjacency& adjacency, const Neighborhood& neighborhood,
+                        const Context& context) {
   if (neighborhood.weight == VertexWeight::one) return VertexField(surface.positions.size(), 1.0f);
   if (neighborhood.distance == DistanceKind::diffusion) return {};
   return vertex_areas(surface, adjacency, context);
+}
+
+/// Those given for each field, or `own`; equal ones once.
+Weights merged(std::size_t fields, std::span<const VertexField> given, const VertexField& own) {
+  Weights weights;
+  for (std::size_t f = 0; f < fields; ++f) {
+    const VertexField& wanted = f < given.size() && !given[f].empty() ? given[f] : own;
+    const auto known = std::find(weights.sets.begin(), weights.sets.end(), wanted);
+    weights.set_of.push_back(static_cast<std::size_t>(known - weights.sets.begin()));
+    if (known == weights.sets.end()) weights.sets.push_back(wanted);
+  }
+  return weights;
 }
 
 }  // namespace
@@ -310,12 +334,14 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
                                                         std::span<const VertexField> fields,
                                                         std::span<const double> sigmas,
                                                         const Neighborhood& neighborhood,
-                                                        const Context& context, const VertexField& weights) {
+                                                        const Context& context,
+                                                        std::span<const VertexField> weights) {
   const double cutoff = neighborhood.cutoff;
   const bool rising = std::is_sorted(sigmas.begin(), sigmas.end());
   if (sigmas.empty() || !rising || !(sigmas.front() > 0) || !(cutoff > 0))
     throw Error(ErrorKind::usage, "widths of averages must rise from above 0");
-  VertexField counted = vertex_weights(surface, adjacency, neighborhood, weights, context);
+  const Weights counted =
+      merged(fields.size(), weights, own_weights(surface, adjacency, neighborhood, context));
   if (neighborhood.distance == DistanceKind::diffusion)
     return diffused(surface, adjacency, fields, sigmas, cutoff, counted, context);
   const double radius = cutoff * sigmas.back();
@@ -323,11 +349,11 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
   std::vector<std::vector<VertexField>> results(fields.size(),
                                                 std::vector<VertexField>(sigmas.size(), VertexField(count)));
   if (count == 0 || fields.empty()) return results;
-  const Samples samples(fields, std::move(counted));
+  const Samples samples(fields, counted);
   const auto run = [&](auto&& make_search) {
     parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
       auto search = make_search();
-      Averager averager(sigmas, cutoff, fields.size());
+      Averager averager(sigmas, cutoff, counted);
       for (std::size_t v = begin; v < end; ++v) {
         const auto vertex = static_cast<std::uint32_t>(v);
         const bool alone = adjacency.corners(vertex).empty();
@@ -358,9 +384,9 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
   if (neighborhood.distance == DistanceKind::euclidean) {
     run([&] { return add_sphere; });
   } else {
+    const WindowRim window(surface, adjacency, samples, sigmas, cutoff);
     run([&] {
-      return [&, rim = WindowRim(surface, adjacency, samples, sigmas, cutoff)](std::uint32_t v,
-                                                                               Averager& averager) mutable {
+      return [&add_sphere, rim = window](std::uint32_t v, Averager& averager) mutable {
         add_sphere(v, averager);
         rim.add(v, averager);
       };

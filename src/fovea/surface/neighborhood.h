@@ -41,9 +41,9 @@ struct Neighborhood {
 /// corners opposite, under weights exp(−k d²) with k = 1, 1.2, 1.5, 2 from the first width to the fourth and
 /// on, and d the distance to the straight crossing in mean edge lengths (the paper does not say its unit).
 ///
-/// `weights`, [#V] and above 0, replace what `neighborhood` says of w. By `diffusion` with weights other than
-/// areas, the heat of f w / area over that of w / area, where w / area counts as no less than 1 / 100 and no
-/// more than 100 times its mean.
+/// `weights`, one [#V] and above 0 for each field, replace what `neighborhood` says of w; an empty one leaves
+/// it. By `diffusion` with weights other than areas, the heat of f w / area over that of w / area, where w /
+/// area counts as no less than 1 / 100 and no more than 100 times its mean.
 ///
 /// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what
 /// is within the largest radius of every vertex; by `diffusion` some hundred products with a sparse matrix.
@@ -52,6 +52,6 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
                                                         std::span<const double> sigmas,
                                                         const Neighborhood& neighborhood,
                                                         const Context& context,
-                                                        const VertexField& weights = {});
+                                                        std::span<const VertexField> weights = {});
 
 }  // namespace fovea
