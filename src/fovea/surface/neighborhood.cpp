@@ -22,7 +22,7 @@ constexpr std::size_t kGrain = 1 << 9;
 /// More vertices to the area than this many times the mean, or fewer, are not told apart by heat.
 constexpr double kMostDensity = 100;
 
-/// Sorted into cells of a regular grid as wide as the largest radius, so that neighbours are in 27 cells.
+/// Points sorted into the cells of a regular grid, a few to the largest radius.
 class PointGrid {
  public:
   /// Of the vertices that have triangles.
@@ -31,9 +31,11 @@ class PointGrid {
     for (const Vec3f& p : surface.positions) box.add(Vec3d(p));
     low_ = box.low;
     // No more cells along an axis than numbers of a cell have room for.
-    cell_ = std::max(radius, box.diagonal() / kMostCells);
+    cell_ = std::max(radius / kCellsPerRadius, box.diagonal() / kMostCells);
     for (std::uint32_t v = 0; v < surface.positions.size(); ++v) {
-      if (!adjacency.corners(v).empty()) entries_.push_back({key(cell(v)), v});
+      if (adjacency.corners(v).empty()) continue;
+      const Vec3d at = scaled(v);
+      entries_.push_back({key(whole(at.x), whole(at.y), whole(at.z)), surface.positions[v], v});
     }
     std::sort(entries_.begin(), entries_.end());
   }
@@ -41,15 +43,20 @@ class PointGrid {
   /// Calls f(vertex, squared distance) for those within the radius, in a fixed order.
   template <class F>
   void for_near(std::uint32_t v, double radius, F&& f) const {
-    const std::array<std::int64_t, 3> at = cell(v);
-    const Vec3d p = surface_.position(v);
-    for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
-      for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
-        // Three cells in a row have numbers in a row.
-        const std::uint64_t first = key({at[0] - 1, y, z});
-        auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{first, 0});
-        for (; entry != entries_.end() && entry->key <= first + 2; ++entry) {
-          const double d2 = length_squared(surface_.position(entry->vertex) - p);
+    const Vec3d p = surface_.position(v), at = scaled(v);
+    const double reach = cell_ > 0 ? radius / cell_ : 0;
+    for (std::int64_t z = first(at.z - reach); z <= whole(at.z + reach); ++z) {
+      const double dz = gap(at.z, z);
+      for (std::int64_t y = first(at.y - reach); y <= whole(at.y + reach); ++y) {
+        const double dy = gap(at.y, y), left2 = reach * reach - dy * dy - dz * dz;
+        if (left2 < -kSlack) continue;
+        // Cells in a row have numbers in a row.
+        const double left = std::sqrt(std::max(left2, 0.0)) + kSlack;
+        const std::uint64_t last = key(whole(at.x + left), y, z);
+        auto entry = std::lower_bound(entries_.begin(), entries_.end(), key(first(at.x - left), y, z),
+                                      [](const Entry& e, std::uint64_t k) { return e.key < k; });
+        for (; entry != entries_.end() && entry->key <= last; ++entry) {
+          const double d2 = length_squared(Vec3d(entry->position) - p);
           if (d2 <= radius * radius) f(entry->vertex, d2);
         }
       }
@@ -58,24 +65,30 @@ class PointGrid {
 
  private:
   static constexpr int kBits = 20;
-  static constexpr double kMostCells = (1 << kBits) - 4;
+  static constexpr double kMostCells = (1 << kBits) - 64;
+  static constexpr double kCellsPerRadius = 4;
+  static constexpr double kSlack = 1e-6;  // of a cell, for rounding
   struct Entry {
     std::uint64_t key;
+    Vec3f position;
     std::uint32_t vertex;
     friend bool operator<(const Entry& a, const Entry& b) {
       return a.key != b.key ? a.key < b.key : a.vertex < b.vertex;
     }
   };
 
-  std::array<std::int64_t, 3> cell(std::uint32_t v) const {
-    const Vec3d p = cell_ > 0 ? (surface_.position(v) - low_) / cell_ : Vec3d();
-    // One more, so that there are neighbours on all sides.
-    return {1 + static_cast<std::int64_t>(p.x), 1 + static_cast<std::int64_t>(p.y),
-            1 + static_cast<std::int64_t>(p.z)};
+  /// A vertex in cells from the corner of the box; nothing is below 0.
+  Vec3d scaled(std::uint32_t v) const { return cell_ > 0 ? (surface_.position(v) - low_) / cell_ : Vec3d(); }
+  static std::int64_t whole(double x) { return static_cast<std::int64_t>(x); }
+  static std::int64_t first(double x) { return x > 0 ? whole(x) : 0; }
+  /// From x to the cell, 0 inside.
+  static double gap(double x, std::int64_t cell) {
+    const auto c = static_cast<double>(cell);
+    return x < c ? c - x : x > c + 1 ? x - c - 1 : 0;
   }
-  static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
-    return static_cast<std::uint64_t>(c[2]) << (2 * kBits) | static_cast<std::uint64_t>(c[1]) << kBits |
-           static_cast<std::uint64_t>(c[0]);
+  static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
+    return static_cast<std::uint64_t>(z) << (2 * kBits) | static_cast<std::uint64_t>(y) << kBits |
+           static_cast<std::uint64_t>(x);
   }
 
   const Surface& surface_;
@@ -109,8 +122,14 @@ struct Weights {
   std::vector<std::size_t> set_of;  ///< [#fields]
 };
 
-/// The fields at a vertex or between vertices, each times its weight, then the weights. [#fields + #sets]
-using Sample = std::span<const double>;
+/// Two numbers that are worked on as one.
+using Double2 [[gnu::vector_size(16)]] = double;
+
+/// The fields at a vertex or between vertices, each times its weight, then the weights, then perhaps a 0.
+/// [(#fields + #sets) / 2, rounded up]
+using Sample = std::span<const Double2>;
+std::size_t width(const Weights& weights) { return (weights.set_of.size() + weights.sets.size() + 1) / 2; }
+double number(Sample sample, std::size_t i) { return sample[i / 2][i % 2]; }
 
 /// The averages at one vertex, of neighbours that come one by one.
 class Averager {
@@ -118,12 +137,12 @@ class Averager {
   Averager(std::span<const double> sigmas, double cutoff, const Weights& weights)
       : cutoff2_(cutoff * cutoff),
         weights_(weights),
-        width_(weights.set_of.size() + weights.sets.size()),
+        width_(width(weights)),
         gaussian_(cutoff2_),
         sums_(sigmas.size() * width_) {
     for (const double sigma : sigmas) precisions_.push_back(1 / (sigma * sigma));
   }
-  void start() { std::fill(sums_.begin(), sums_.end(), 0); }
+  void start() { std::fill(sums_.begin(), sums_.end(), Double2{}); }
   /// To all scales that reach as far.
   void add(double distance2, Sample sample) {
     for (std::size_t i = precisions_.size(); i > 0; --i) {
@@ -137,13 +156,13 @@ class Averager {
     add(scale, std::exp(-0.5 * distance2 * precisions_[scale]), sample);
   }
   double average(std::size_t field, std::size_t scale) const {
-    const double* const sums = sums_.data() + scale * width_;
-    return sums[field] / sums[weights_.set_of.size() + weights_.set_of[field]];
+    const Sample sums(sums_.data() + scale * width_, width_);
+    return number(sums, field) / number(sums, weights_.set_of.size() + weights_.set_of[field]);
   }
 
  private:
   void add(std::size_t scale, double weight, Sample sample) {
-    double* const sums = sums_.data() + scale * width_;
+    Double2* const sums = sums_.data() + scale * width_;
     for (std::size_t i = 0; i < width_; ++i) sums[i] += weight * sample[i];
   }
 
@@ -152,24 +171,25 @@ class Averager {
   std::size_t width_;
   Gaussian gaussian_;
   std::vector<double> precisions_;  // [#scales], 1 / σ²
-  std::vector<double> sums_;        // [#scales][#fields + #sets]
+  std::vector<Double2> sums_;       // [#scales][width]
 };
 
 /// The samples at the vertices.
 class Samples {
  public:
-  Samples(std::span<const VertexField> fields, const Weights& weights)
-      : width_(fields.size() + weights.sets.size()) {
+  Samples(std::span<const VertexField> fields, const Weights& weights) : width_(fovea::width(weights)) {
     const std::size_t count = weights.sets[0].size();
-    values_.reserve(count * width_);
+    values_.resize(count * width_, Double2{});
     // What counts for nothing still counts where there is nothing else.
     const auto weight = [&](std::size_t set, std::size_t v) {
       return static_cast<double>(std::max(weights.sets[set].values()[v], std::numeric_limits<float>::min()));
     };
     for (std::size_t v = 0; v < count; ++v) {
+      Double2* const sample = values_.data() + v * width_;
       for (std::size_t f = 0; f < fields.size(); ++f)
-        values_.push_back(weight(weights.set_of[f], v) * static_cast<double>(fields[f].values()[v]));
-      for (std::size_t set = 0; set < weights.sets.size(); ++set) values_.push_back(weight(set, v));
+        sample[f / 2][f % 2] = weight(weights.set_of[f], v) * static_cast<double>(fields[f].values()[v]);
+      for (std::size_t set = 0, i = fields.size(); set < weights.sets.size(); ++set, ++i)
+        sample[i / 2][i % 2] = weight(set, v);
     }
   }
   Sample operator[](std::size_t v) const { return {values_.data() + v * width_, width_}; }
@@ -177,7 +197,7 @@ class Samples {
 
  private:
   std::size_t width_;
-  std::vector<double> values_;  // [#V][#fields + #sets]
+  std::vector<Double2> values_;  // [#V][width]
 };
 
 /// What the local filter window has beyond the sphere: the neighbours outside, and where the edges to them
@@ -215,7 +235,7 @@ class WindowRim {
   void add_crossing(std::uint32_t v, std::uint32_t w, std::size_t scale, Averager& averager) {
     const Vec3d p = surface_.position(v), q = surface_.position(w);
     const Vec3d straight = p + (q - p) * (radii_[scale] / length(q - p));
-    std::fill(mean_.begin(), mean_.end(), 0);
+    std::fill(mean_.begin(), mean_.end(), Double2{});
     double sum = 0;
     Vec3d point;
     const auto add = [&](std::uint32_t x) {
@@ -236,7 +256,7 @@ class WindowRim {
       if (b == w) add(a);
     }
     if (!(sum > 0)) return;  // all are many edges away
-    for (double& x : mean_) x /= sum;
+    for (Double2& x : mean_) x /= sum;
     averager.add_beyond(scale, length_squared(point / sum - p), mean_);
   }
 
@@ -245,7 +265,7 @@ class WindowRim {
   const Samples& samples_;
   std::vector<double> radii_;
   double mean_edge_ = 1;
-  std::vector<double> mean_;  // the sample at the crossing at hand
+  std::vector<Double2> mean_;  // the sample at the crossing at hand
 };
 
 /// Part of σ² that a Gaussian over a surface keeps as its variance when it is cut off at c σ.
