@@ -219,10 +219,10 @@ TEST(Salient, KeepsTrianglesWherePeopleLook) {
 
 // --- Chosen by pictures ----------------------------------------------------------------------------
 
-/// A vase of some 1500 triangles, with its texture.
+/// A vase of a few hundred triangles, with its texture.
 Model small_vase() {
   Context context;
-  return make_sample("vase", 0.02, context);
+  return make_sample("vase", 0.01, context);
 }
 
 AutoSaliency chosen(const Model& model, double ratio, const Importance& own = {}, int threads = 1) {
