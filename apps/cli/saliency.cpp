@@ -111,10 +111,23 @@ class Saliency : public Verb {
     for (const std::string& path : paths_of(map)) check_output(path, inputs_, force_, output_check());
   }
 
-  OutputKind kind_by_extension() const {
-    std::string extension = std::filesystem::path(output_).extension().string();
+  static std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+  }
+
+  static void check_attribute_output(const std::filesystem::path& path, bool force) {
+    if (lower_extension(path) == ".obj") {
+      throw Error(ErrorKind::usage, "OBJ files have no place for vertex attributes", path.string(),
+                  "name the output .glb, .gltf or .ply");
+    }
+    fovea::check_output(path, force);
+  }
+
+  OutputKind kind_by_extension() const {
+    const std::string extension = lower_extension(output_);
     const auto is = [&](std::initializer_list<const char*> names) {
       return std::find(names.begin(), names.end(), extension) != names.end();
     };
@@ -125,6 +138,7 @@ class Saliency : public Verb {
   void (*output_check() const)(const std::filesystem::path&, bool) {
     switch (kind_) {
       case OutputKind::field: return check_field_output;
+      case OutputKind::attribute: return check_attribute_output;
       case OutputKind::picture:
       case OutputKind::texture: return check_image_output;
       default: return fovea::check_output;

@@ -123,6 +123,8 @@ TEST_F(SaliencyVerb, AttributeKeepsTheModel) {
     return values;
   };
   EXPECT_EQ(sorted(found[0]), sorted(expected[0]));
+  ASSERT_EQ(saliency({grid_, "-o", out("marked.ply"), "--as", "attribute"}).code, 0);
+  EXPECT_EQ(sorted(field_from_attribute(model(out("marked.ply")), "SALIENCY")[0]), sorted(expected[0]));
   ASSERT_EQ(saliency({grid_, "-o", out("m.glb"), "--as", "attribute", "--map", "curvature-contrast-1"}).code,
             0);
   EXPECT_EQ(field_from_attribute(model(out("m.glb")), "_CURVATURE_CONTRAST_1").size(), 1u);
@@ -290,6 +292,7 @@ TEST_F(SaliencyVerb, RefusesWhatItCannotDo) {
       {{grid_, "-o", out("x.npy"), "--as", "texture"}, 2, ".png"},
       {{grid_, "-o", out("x.png"), "--as", "heat"}, 2, ".glb"},
       {{grid_, "-o", out("x.csv"), "--as", "attribute"}, 2, ".glb"},
+      {{grid_, "-o", out("x.obj"), "--as", "attribute"}, 2, "no place"},
       {{grid_, "-o", out("x.glb"), "--as", "photo"}, 2, "texture"},
       {{square, "-o", out("x.png"), "--as", "texture"}, 2, "texture as its base colour"},
       {{grid_, "-o", grid_}, 2, "the output is an input"},
