@@ -61,8 +61,20 @@ std::string details(const Option& option, const std::string& default_text) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+// A choice of more values than a line holds goes on in the next.
+std::string break_choice(std::string text) {
+  const std::string next = "\n      ";
+  for (std::size_t begin = 0; text.size() - begin > kWidth;) {
+    const std::size_t bar = text.rfind('|', begin + kWidth - 1);
+    if (bar == std::string::npos || bar <= begin) break;
+    text.insert(bar + 1, next);
+    begin = bar + 2;
+  }
+  return text;
+}
+
 std::string entry(const std::string& left, const std::string& help) {
-  const std::string start = "  " + left;
+  const std::string start = break_choice("  " + left);
   // A long flag gets a line of its own.
   const std::string gap = start.size() + 2 > kHelpColumn ? "\n" + std::string(kHelpColumn, ' ')
                                                          : std::string(kHelpColumn - start.size(), ' ');

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <limits>
 
 #include "fovea/io/field_file.h"
 #include "fovea/io/image_file.h"
@@ -11,6 +13,7 @@
 #include "fovea/render/render.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/saliency/texture_space.h"
+#include "fovea/surface/correspondence.h"
 #include "fovea/surface/curvature.h"
 #include "fovea/surface/scene_surface.h"
 #include "fovea/surface/statistics.h"
@@ -76,17 +79,22 @@ class Saliency : public Verb {
     check_request();
     const Model model =
         session.phase("read", [&] { return read_model(inputs_[0], read_options_, session.context); });
-    const std::vector<Model> poses = session.phase("poses", [&] { return read_poses(session.context); });
+    const std::vector<Model> poses =
+        session.phase("poses", [&] { return read_poses(model, session.context); });
+    if (kind_ == OutputKind::texture) images_ = texture_space_images(model);
+    check_outputs(kWhole);
     ModelSaliency found =
         session.phase("saliency", [&] { return model_saliency(model, options_, session.context, poses); });
     found.maps.push_back({kWhole, found.saliency});
     const Json statistics =
         session.phase("statistics", [&] { return statistics_json(model, found, session); });
-    std::vector<std::string> written;
+    const std::vector<const SaliencyMap*> maps = chosen(found);
+    for (const SaliencyMap* map : maps) check_outputs(map->name);
+    session.report["outputs"] = Json::array();
     session.phase("write", [&] {
-      for (const SaliencyMap* map : chosen(found)) write(model, *map, session, written);
+      for (const SaliencyMap* map : maps) write(model, *map, session);
     });
-    tell(session, found, statistics, written);
+    tell(session, found, statistics);
     return 0;
   }
 
@@ -94,11 +102,32 @@ class Saliency : public Verb {
   void check_request() {
     for (const std::string& input : inputs_) check_input(input);
     if (kind_ == OutputKind::by_extension) kind_ = kind_by_extension();
-    check_output(output_, inputs_, force_, output_check());
+    // Of several textures each gets a name of its own.
+    check_output(output_, inputs_, force_ || kind_ == OutputKind::texture, output_check());
+  }
+
+  /// Before anything is written: what stands in the way of any file of a map.
+  void check_outputs(const std::string& map) const {
+    for (const std::string& path : paths_of(map)) check_output(path, inputs_, force_, output_check());
+  }
+
+  static std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+  }
+
+  static void check_attribute_output(const std::filesystem::path& path, bool force) {
+    if (lower_extension(path) == ".obj") {
+      throw Error(ErrorKind::usage, "OBJ files have no place for vertex attributes", path.string(),
+                  "name the output .glb, .gltf or .ply");
+    }
+    fovea::check_output(path, force);
   }
 
   OutputKind kind_by_extension() const {
-    const std::string extension = std::filesystem::path(output_).extension().string();
+    const std::string extension = lower_extension(output_);
     const auto is = [&](std::initializer_list<const char*> names) {
       return std::find(names.begin(), names.end(), extension) != names.end();
     };
@@ -109,16 +138,23 @@ class Saliency : public Verb {
   void (*output_check() const)(const std::filesystem::path&, bool) {
     switch (kind_) {
       case OutputKind::field: return check_field_output;
+      case OutputKind::attribute: return check_attribute_output;
       case OutputKind::picture:
       case OutputKind::texture: return check_image_output;
       default: return fovea::check_output;
     }
   }
 
-  std::vector<Model> read_poses(Context& context) const {
+  std::vector<Model> read_poses(const Model& first, Context& context) const {
     std::vector<Model> poses;
-    for (std::size_t i = 1; i < inputs_.size(); ++i)
+    for (std::size_t i = 1; i < inputs_.size(); ++i) {
       poses.push_back(read_model(inputs_[i], read_options_, context));
+      try {
+        surfaces_in(first, poses.back());
+      } catch (const Error& error) {
+        throw error.within(inputs_[i]);
+      }
+    }
     return poses;
   }
 
@@ -136,31 +172,43 @@ class Saliency : public Verb {
     return maps;
   }
 
-  /// "out.png", or "out-geometry.png" where there are several files.
-  std::string path_of(const std::string& suffix) const {
+  /// The files of a map: "out.png"; "out-geometry.png" beside it with --map all; "out-image2.png" of each of
+  /// several textures.
+  std::vector<std::string> paths_of(const std::string& map) const {
     const std::filesystem::path path(output_);
-    const std::string name = path.stem().string() + "-" + suffix + path.extension().string();
-    return suffix.empty() ? output_ : (path.parent_path() / name).string();
+    const auto with = [&](const std::string& suffix) {
+      return (path.parent_path() / (path.stem().string() + suffix + path.extension().string())).string();
+    };
+    const std::string suffix = map_ == kAll && map != kWhole ? "-" + map : "";
+    if (images_.size() < 2) return {suffix.empty() ? output_ : with(suffix)};
+    std::vector<std::string> paths;
+    for (const int image : images_) paths.push_back(with(fmt::format("{}-image{}", suffix, image)));
+    return paths;
   }
 
-  void write(const Model& model, const SaliencyMap& map, Session& session,
-             std::vector<std::string>& written) const {
-    const std::string path = path_of(map_ == kAll && map.name != kWhole ? map.name : "");
+  void write(const Model& model, const SaliencyMap& map, Session& session) const {
+    const std::vector<std::string> paths = paths_of(map.name);
     WriteOptions options;
     options.force = force_;
     switch (kind_) {
       case OutputKind::field:
-        write_field(path, field_in_source_order(model, map.fields), map.name, force_);
+        write_field(paths[0], field_in_source_order(model, map.fields), map.name, force_);
         break;
-      case OutputKind::picture: write_image(picture(model, map, session.context), path, force_); break;
-      case OutputKind::texture: return write_textures(model, map, path, session, written);
+      case OutputKind::picture: write_image(picture(model, map, session.context), paths[0], force_); break;
+      case OutputKind::texture:
+        for (std::size_t i = 0; i < images_.size(); ++i) {
+          write_image(texture_space_map(model, scaled(map.fields), images_[i], session.context), paths[i],
+                      force_);
+        }
+        break;
       case OutputKind::attribute:
-        write_model(with_attribute(model, map.fields, attribute_name(map.name)), path, options,
+        write_model(with_attribute(model, map.fields, attribute_name(map.name)), paths[0], options,
                     session.context);
         break;
-      default: write_model(heat_map(model, scaled(map.fields)), path, options, session.context);
+      default: write_model(heat_map(model, scaled(map.fields)), paths[0], options, session.context);
     }
-    written.push_back(path);
+    for (const std::string& path : paths)
+      session.report["outputs"].push_back({{"path", path}, {"map", map.name}});
   }
 
   /// "_SALIENCY", "_CURVATURE_CONTRAST_1".
@@ -168,22 +216,6 @@ class Saliency : public Verb {
     std::string name = "_" + map;
     for (char& c : name) c = c == '-' ? '_' : static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
     return name;
-  }
-
-  void write_textures(const Model& model, const SaliencyMap& map, const std::string& path, Session& session,
-                      std::vector<std::string>& written) const {
-    const std::vector<TextureSpaceMap> textures =
-        texture_space_maps(model, scaled(map.fields), session.context);
-    for (const TextureSpaceMap& texture : textures) {
-      const std::filesystem::path p(path);
-      const std::string own = textures.size() == 1
-                                  ? path
-                                  : (p.parent_path() / fmt::format("{}-image{}{}", p.stem().string(),
-                                                                   texture.image, p.extension().string()))
-                                        .string();
-      write_image(texture.map, own, force_);
-      written.push_back(own);
-    }
   }
 
   /// To [0, 1] over all meshes.
@@ -205,11 +237,13 @@ class Saliency : public Verb {
     RenderOptions options;
     options.pass = Pass::field;
     options.width = options.height = size_;
-    const Pose pose = pose_of(model, options_.pose);
-    const RenderScene scene = make_render_scene(model, pose, context);
-    const std::vector<View> views = views_of(view_options_, model, pose, scene);
+    const std::vector<VertexField> fields = scaled(map.fields);
+    const Model heat = heat_map(model, fields);  // has no textures to decode
+    const Pose pose = pose_of(heat, options_.pose);
+    const RenderScene scene = make_render_scene(heat, pose, context);
+    const std::vector<View> views = views_of(view_options_, heat, pose, scene);
     Image8 sheet = empty_sheet(views.size(), columns_, options);
-    arrange(render_views(scene, views, options, context, scaled(map.fields)), sheet);
+    arrange(render_views(scene, views, options, context, fields), sheet);
     return sheet;
   }
 
@@ -232,11 +266,9 @@ class Saliency : public Verb {
     return json;
   }
 
-  void tell(Session& session, const ModelSaliency& found, const Json& statistics,
-            const std::vector<std::string>& written) const {
+  void tell(Session& session, const ModelSaliency& found, const Json& statistics) const {
     session.report["inputs"] = inputs_;
-    session.report["outputs"] = Json::array();
-    for (const std::string& path : written) session.report["outputs"].push_back({{"path", path}});
+    const Json written = session.report["outputs"];
     session.report["textured"] = found.textured;
     session.report["poses"] = found.poses;
     session.report["maps"] = statistics;
@@ -247,11 +279,11 @@ class Saliency : public Verb {
       table.row({name, number_text(s["mean"]), number_text(s["deviation"]), number_text(s["median"]),
                  number_text(s["min"]) + " … " + number_text(s["max"])});
     }
-    session.print_summary(
-        fmt::format("{} -> {}\n{}{}, {}, peak memory {}\n", printable(inputs_[0]),
-                    written.size() == 1 ? printable(written[0]) : plural(written.size(), "file", "files"),
-                    table.text(0), plural(found.poses.size(), "pose", "poses"),
-                    seconds_text(session.seconds()), bytes_text(peak_memory_bytes())));
+    session.print_summary(fmt::format("{} -> {}\n{}{}, {}, peak memory {}\n", printable(inputs_[0]),
+                                      written.size() == 1 ? printable(written[0]["path"].get<std::string>())
+                                                          : plural(written.size(), "file", "files"),
+                                      table.text(0), plural(found.poses.size(), "pose", "poses"),
+                                      seconds_text(session.seconds()), bytes_text(peak_memory_bytes())));
   }
 
   static ViewOptions montage_views() {
@@ -263,6 +295,7 @@ class Saliency : public Verb {
 
   std::vector<std::string> inputs_;
   std::string output_;
+  std::vector<int> images_;  ///< Whose space maps are drawn in, for OutputKind::texture.
   std::string map_ = kWhole;
   OutputKind kind_ = OutputKind::by_extension;
   bool force_ = false;

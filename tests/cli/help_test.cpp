@@ -13,7 +13,8 @@ TEST(Help, NamesAllVerbs) {
   const Outcome help = fovea({"--help"});
   EXPECT_EQ(help.code, 0);
   EXPECT_THAT(help.err, IsEmpty());
-  for (const char* verb : {"info", "simplify", "sample"}) EXPECT_THAT(help.out, HasSubstr(verb));
+  for (const char* verb : {"info", "simplify", "saliency", "compare", "render", "sample"})
+    EXPECT_THAT(help.out, HasSubstr(verb));
   EXPECT_EQ(fovea({"-h"}).out, help.out);
 }
 
@@ -27,7 +28,7 @@ TEST(Help, WithoutArgumentsIsAUsageErrorThatHelps) {
 TEST(Help, VersionIsThatOfTheProject) { EXPECT_EQ(fovea({"--version"}).out, "fovea " FOVEA_VERSION "\n"); }
 
 TEST(Help, EveryVerbHasUsageOptionsAndExamples) {
-  for (const std::string verb : {"info", "simplify", "sample"}) {
+  for (const std::string verb : {"info", "simplify", "saliency", "compare", "render", "sample"}) {
     const Outcome help = fovea({verb, "--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage: fovea " + verb));
@@ -49,7 +50,7 @@ TEST(Help, OptionsShowRangeUnitAndDefault) {
 }
 
 TEST(Help, LinesFitATerminal) {
-  for (const std::string verb : {"info", "simplify", "sample"}) {
+  for (const std::string verb : {"info", "simplify", "saliency", "compare", "render", "sample"}) {
     std::istringstream lines(fovea({verb, "--help"}).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   }
@@ -69,7 +70,8 @@ TEST(Suggestions, UnknownVerb) {
 }
 
 TEST(Suggestions, NothingNearListsTheVerbs) {
-  EXPECT_THAT(fovea({"qqqqqqqqqq"}).err, HasSubstr("verbs are: info, simplify, compare, render, sample"));
+  EXPECT_THAT(fovea({"qqqqqqqqqq"}).err,
+              HasSubstr("verbs are: info, simplify, saliency, compare, render, sample"));
 }
 
 TEST(Suggestions, FlagBeforeTheVerb) {

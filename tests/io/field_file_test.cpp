@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "fovea/base/random.h"
+#include "fovea/io/read.h"
+#include "fovea/io/write.h"
 #include "support/meshes.h"
 #include "support/reading.h"
 
@@ -174,6 +178,155 @@ TEST(FieldFile, UnknownAttributesNameThosePresent) {
   ASSERT_TRUE(error);
   EXPECT_EQ(error->kind(), ErrorKind::usage);
   EXPECT_NE(error->hint().find("COLOR_0, _IMPORTANCE"), std::string::npos) << error->hint();
+}
+
+// --- Writing ---------------------------------------------------------------------------------------
+
+std::vector<std::uint32_t> bits_of(const std::vector<float>& values) {
+  std::vector<std::uint32_t> bits;
+  for (const float x : values) bits.push_back(std::bit_cast<std::uint32_t>(x));
+  return bits;
+}
+
+TEST(FieldFile, WrittenFieldsReadBackTheSameBits) {
+  using Limits = std::numeric_limits<float>;
+  std::vector<float> values = {0.0f,
+                               -0.0f,
+                               1,
+                               1.0f / 3,
+                               -1e-7f,
+                               16777216,
+                               1e21f,
+                               Limits::max(),
+                               Limits::lowest(),
+                               Limits::min(),
+                               Limits::denorm_min(),
+                               -Limits::denorm_min(),
+                               std::nextafter(1.0f, 2.0f),
+                               Limits::infinity(),
+                               -Limits::infinity()};
+  Random random(1);
+  while (values.size() < 2000) {
+    const float x = std::bit_cast<float>(random.below(0xFFFFFFFFu));
+    if (!std::isnan(x)) values.push_back(x);  // of what is not a number text keeps no bits
+  }
+  const TempFolder folder;
+  for (const char* name : {"a.npy", "a.csv", "a.txt", "b.NPY", "b.Csv"}) {
+    write_field(folder.path() / name, values, "saliency", false);
+    EXPECT_EQ(bits_of(read_field(folder.path() / name)), bits_of(values)) << name;
+  }
+  write_field(folder.path() / "c.csv", std::vector<float>{0.1f, 2}, "saliency", false);
+  const auto bytes = read_file(folder.path() / "c.csv", 100);
+  EXPECT_EQ(test::text_of(bytes), "saliency\n0.1\n2\n") << "the shortest digits, below a heading";
+}
+
+TEST(FieldFile, AnEmptyFieldIsAFileToo) {
+  const TempFolder folder;
+  for (const char* name : {"a.npy", "a.csv"}) {
+    write_field(folder.path() / name, {}, "saliency", false);
+    EXPECT_TRUE(read_field(folder.path() / name).empty()) << name;
+  }
+}
+
+TEST(FieldFile, WhatCannotBeWrittenIsRefusedBeforehandAndWhenWriting) {
+  const TempFolder folder;
+  const auto refused = [&](const std::string& name, bool force, ErrorKind kind, const std::string& message) {
+    const auto path = folder.path() / name;
+    expect_error([&] { check_field_output(path, force); }, kind, name, message);
+    expect_error([&] { write_field(path, std::vector<float>{1}, "x", force); }, kind, name, message);
+  };
+  for (const char* name : {"a.glb", "a.png", "a", "npy", ".npy", "a.npy.bak"}) {
+    refused(name, true, ErrorKind::usage, "not written as");
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / name));
+  }
+  folder.add("old.csv", "precious");
+  refused("old.csv", false, ErrorKind::usage, "exists");
+  EXPECT_EQ(test::text_of(read_file(folder.path() / "old.csv", 100)), "precious");
+  EXPECT_NO_THROW(check_field_output(folder.path() / "old.csv", true));
+  write_field(folder.path() / "old.csv", std::vector<float>{5}, "x", true);
+  EXPECT_EQ(read_field(folder.path() / "old.csv"), std::vector<float>{5});
+  const auto error = test::error_of([&] { check_field_output(folder.path() / "no/a.npy", true); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::output);
+}
+
+/// A number of its own for every vertex.
+std::vector<VertexField> numbered(const Model& model) {
+  std::vector<VertexField> fields;
+  float next = 0.125f;
+  for (const Mesh& mesh : model.meshes) {
+    VertexField& field = fields.emplace_back(mesh.surface.vertex_count());
+    for (float& x : field.values()) x = next += 1;
+  }
+  return fields;
+}
+
+void expect_way_back(const Model& model, const std::string& name) {
+  const auto fields = numbered(model);
+  const std::vector<float> values = field_in_source_order(model, fields);
+  std::size_t sources = 0;
+  for (const Mesh& mesh : model.meshes) {
+    const TriMesh& surface = mesh.surface;
+    sources += surface.source_vertex.empty() ? surface.vertex_count() : surface.source_vertex.size();
+  }
+  EXPECT_EQ(values.size(), sources) << name;
+  EXPECT_EQ(field_from_source_order(model, values), fields) << name;
+}
+
+TEST(FieldFile, SourceOrderThereAndBack) {
+  const Model model = two_triangles();
+  const std::vector<float> values = field_in_source_order(model, numbered(model));
+  // Both vertices of a seam get the number of their point, and what no triangle uses gets 0.
+  EXPECT_EQ(values[1], values[3]);
+  EXPECT_EQ(values[2], values[5]);
+  EXPECT_EQ(values[6], 0);
+  EXPECT_NE(values[0], values[4]);
+  expect_way_back(model, "two triangles");
+  for (const auto& [name, mesh] : test::all_families()) expect_way_back(test::model_of({mesh, mesh}), name);
+  Model without_source = test::model_of({test::cube(), test::torus(12, 8)});
+  without_source.meshes[0].surface.source_vertex.clear();
+  expect_way_back(without_source, "a mesh that came from no file");
+  expect_way_back(Model{}, "nothing");
+}
+
+TEST(FieldFile, SourceOrderIsThatOfTheFile) {
+  const TempFolder folder;
+  Context context;
+  // The third vertex is not used, the last is at the place of the first.
+  const auto obj = folder.add("a.obj",
+                              "v 1 0 0\nv 2 0 0\nv 9 9 9\nv 2 1 0\nv 1 0 0\nv 0 1 0\n"
+                              "f 1 2 4\nf 5 4 6\n");
+  const auto ply = folder.add("a.ply",
+                              "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+                              "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                              "end_header\n1 0 0\n2 0 0\n9 9 9\n2 1 0\n1 0 0\n0 1 0\n3 0 1 3\n3 4 3 5\n");
+  for (const auto& path : {obj, ply}) {
+    const Model model = read_model(path, {}, context);
+    ASSERT_EQ(model.meshes.size(), 1u);
+    VertexField x_plus_10y(model.meshes[0].surface.vertex_count());
+    for (std::size_t v = 0; v < x_plus_10y.size(); ++v) {
+      const Vec3f p = model.meshes[0].surface.positions[v];
+      x_plus_10y.values()[v] = p.x + 10 * p.y;
+    }
+    EXPECT_EQ(field_in_source_order(model, {&x_plus_10y, 1}), (std::vector<float>{1, 2, 0, 12, 1, 10}))
+        << path;
+    expect_way_back(model, path.string());
+  }
+  // What Fovea wrote and reads: several meshes, seams, and parts that share points.
+  for (const char* name : {"a.glb", "b.gltf"}) {
+    Model model = test::model_of({test::cube(), test::two_part_grid(4, 3), test::open_cylinder(8, 3)});
+    model.materials.resize(2);
+    write_model(model, folder.path() / name, {}, context);
+    expect_way_back(read_model(folder.path() / name, {}, context), name);
+  }
+}
+
+TEST(FieldFile, FieldsOfAnotherModelAreRefused) {
+  const Model model = two_triangles();
+  auto fields = numbered(model);
+  fields[1] = VertexField(2);
+  expect_error([&] { field_in_source_order(model, fields); }, ErrorKind::usage, "", "mesh 1");
+  expect_error([&] { field_in_source_order(model, {}); }, ErrorKind::usage, "", "2 meshes");
 }
 
 }  // namespace

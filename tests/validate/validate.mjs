@@ -1,7 +1,9 @@
-// Simplifies models with the command line and puts every output through the Khronos glTF validator.
+// Simplifies models with the command line, writes saliency into them, and puts every output through the
+// Khronos glTF validator.
 //
 //   node validate.mjs FOVEA OUTPUT-FOLDER sample NAME     a sample model, in every way of writing
-//   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER at 10 %
+//   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER: at 10 %, as a
+//                                                         heat map and with an attribute
 //
 // Exit status: 0 all valid, 1 something is not, 77 (skipped) if FOVEA_DATA is not set.
 
@@ -40,11 +42,12 @@ async function validate(file) {
   };
 }
 
-// Runs one simplification; returns what is wrong with it, or nothing. A file that has errors may be refused,
-// but must not end in a crash or a hang; if it is read all the same, it must not gain errors of other kinds.
-async function faultOf(input, output, ratio, ...options) {
+// Runs one command that makes `output` of `input`; returns what is wrong with it, or nothing. A file that has
+// errors may be refused, but must not end in a crash or a hang; if it is read all the same, it must not gain
+// errors of other kinds.
+async function faultOf(input, output, words, faultOfCount) {
   const before = await validate(input).catch((error) => ({ errors: [{ code: 'UNREADABLE', message: String(error) }], triangles: 0 }));
-  const { code, text } = await run('simplify', input, '-o', output, '--ratio', String(ratio), '--force', '--quiet', ...options);
+  const { code, text } = await run(words[0], input, '-o', output, '--force', '--quiet', ...words.slice(1));
   const namesExtension = code === UNSUPPORTED && /\b[A-Z]+_\w+/.test(text);
   if (namesExtension || (before.errors.length && REFUSALS.includes(code))) return null;
   if (code !== 0 && code !== NOT_REACHED) return `exit code ${code}: ${text}`;
@@ -52,10 +55,23 @@ async function faultOf(input, output, ratio, ...options) {
   const known = new Set(before.errors.map((error) => error.code));
   const added = after.errors.filter((error) => !known.has(error.code));
   if (added.length) return added.slice(0, 5).map((e) => `${e.code} ${e.pointer ?? ''} ${e.message}`).join('\n    ');
+  return code === 0 ? faultOfCount(before.triangles, after.triangles) : null;
+}
+
+function simplifyFault(input, output, ratio, ...options) {
   // One triangle more is allowed: a collapse takes two, and the count asked for may be odd.
-  if (code === 0 && after.triangles > Math.ceil(ratio * before.triangles) + 1)
-    return `${after.triangles} triangles of ${before.triangles} at ratio ${ratio}`;
-  return null;
+  return faultOf(input, output, ['simplify', '--ratio', String(ratio), ...options], (before, after) =>
+    after > Math.ceil(ratio * before) + 1 ? `${after} triangles of ${before} at ratio ${ratio}` : null);
+}
+
+// Which numbers are written makes no difference here: height is the quickest to have.
+const HEIGHT = ['--geometry-weight', '0', '--texture-weight', '0', '--visibility-weight', '0', '--extremity-weight', '0',
+  '--height-weight', '1'];
+
+function saliencyFault(input, output, kind) {
+  // Reading drops triangles that use a point twice.
+  return faultOf(input, output, ['saliency', '--as', kind, ...HEIGHT], (before, after) =>
+    after > before || (before > 0 && after === 0) ? `${after} triangles instead of ${before}` : null);
 }
 
 async function report(label, check) {
@@ -80,7 +96,13 @@ async function sampleFaults() {
   ];
   for (const [suffix, ratio, ...options] of ways) {
     const output = path.join(outputFolder, `${name}-${suffix}`);
-    faults += await report(path.basename(output), faultOf(input, output, ratio, ...options));
+    faults += await report(path.basename(output), simplifyFault(input, output, ratio, ...options));
+  }
+  for (const kind of ['heat', 'attribute']) {
+    for (const extension of ['glb', 'gltf']) {
+      const output = path.join(outputFolder, `${name}-${kind}.${extension}`);
+      faults += await report(path.basename(output), saliencyFault(input, output, kind));
+    }
   }
   return faults;
 }
@@ -93,7 +115,9 @@ async function corpusFaults() {
   for (const file of files) {
     const input = path.join(folder, file);
     const output = path.join(outputFolder, file.replaceAll(path.sep, '_').replace(/\.gltf$/, '.glb'));
-    faults += await report(file, faultOf(input, output, 0.1));
+    faults += await report(file, simplifyFault(input, output, 0.1));
+    for (const kind of ['heat', 'attribute'])
+      faults += await report(`${file}, ${kind}`, saliencyFault(input, output.replace(/\.glb$/, `-${kind}.glb`), kind));
   }
   return faults;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include "fovea/io/read.h"
 #include "fovea/io/text_scan.h"
 #include "fovea/io/write.h"
+#include "fovea/model/check_fields.h"
 
 namespace fovea {
 
@@ -216,9 +218,16 @@ class SourceOrder {
   std::size_t sources_ = 0, vertices_ = 0;
 };
 
-bool is_npy_name(const std::filesystem::path& path) { return path.extension() == ".npy"; }
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_npy_name(const std::filesystem::path& path) { return lower_extension(path) == ".npy"; }
 bool is_text_name(const std::filesystem::path& path) {
-  return path.extension() == ".csv" || path.extension() == ".txt";
+  return lower_extension(path) == ".csv" || lower_extension(path) == ".txt";
 }
 
 std::string name_of(const AttributeLayer& layer) {
@@ -317,6 +326,7 @@ void write_field(const std::filesystem::path& path, std::span<const float> value
 }
 
 std::vector<float> field_in_source_order(const Model& model, std::span<const VertexField> fields) {
+  check_fields(model, fields);
   std::vector<float> values;
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     const TriMesh& mesh = model.meshes[m].surface;

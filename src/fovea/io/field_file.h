@@ -38,7 +38,7 @@ void write_field(const std::filesystem::path& path, std::span<const float> value
 void check_field_output(const std::filesystem::path& path, bool force);
 
 /// The values of all source vertices in the order of the source file: what `field_from_source_order` reads.
-/// Source vertices that no triangle uses get 0.
+/// Source vertices that no triangle uses get 0. Throws Error(usage) for fields of another model.
 std::vector<float> field_in_source_order(const Model& model, std::span<const VertexField> fields);
 
 /// One field per mesh from one list for the whole model, in the order of the source file: the

@@ -1,24 +1,15 @@
 #include "fovea/render/heat_map.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
-#include "fovea/base/error.h"
 #include "fovea/base/srgb.h"
+#include "fovea/model/check_fields.h"
 #include "fovea/render/render.h"
 
 namespace fovea {
 
 namespace {
-
-void check_sizes(const Model& model, const std::vector<VertexField>& fields) {
-  bool fit = fields.size() == model.meshes.size();
-  for (std::size_t m = 0; fit && m < fields.size(); ++m)
-    fit = fields[m].size() == model.meshes[m].surface.vertex_count();
-  if (!fit) throw Error(ErrorKind::usage, "the fields are not of this model's meshes");
-}
 
 /// A layer with one value for each vertex.
 AttributeLayer vertex_layer(const TriMesh& mesh, Semantic semantic, int width) {
@@ -46,7 +37,7 @@ AttributeLayer heat_layer(const TriMesh& mesh, const VertexField& field) {
 }  // namespace
 
 Model heat_map(const Model& model, const std::vector<VertexField>& fields) {
-  check_sizes(model, fields);
+  check_fields(model, fields);
   Model result = model;
   Material material;
   material.name = "heat";
@@ -73,7 +64,7 @@ Model heat_map(const Model& model, const std::vector<VertexField>& fields) {
 }
 
 Model with_attribute(const Model& model, const std::vector<VertexField>& fields, const std::string& name) {
-  check_sizes(model, fields);
+  check_fields(model, fields);
   Model result = model;
   for (std::size_t m = 0; m < result.meshes.size(); ++m) {
     TriMesh& mesh = result.meshes[m].surface;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <set>
 
 #include "fovea/base/error.h"
 #include "fovea/io/image_codec.h"
+#include "fovea/model/check_fields.h"
 #include "fovea/saliency/texel_scan.h"
 #include "fovea/saliency/uv_map.h"
 
@@ -18,8 +20,9 @@ namespace {
 constexpr int kLongestSide = 4096;
 /// Texels that a map goes on beyond charts, so that filters find nothing else there.
 constexpr int kGutter = 4;
-/// Texels of a triangle along an axis; what repeats more often is cut there, as it only repeats.
-constexpr double kMostTexels = 4 * kLongestSide;
+/// What a triangle covers along an axis, in texels and in repeats of the image: one that covers more is
+/// shrunk to that, so that small images cost little.
+constexpr double kMostTexels = 4 * kLongestSide, kMostRepeats = 16;
 
 /// The corners of a triangle in the texture and the field there.
 struct FieldTriangle {
@@ -42,19 +45,21 @@ class Canvas {
   Canvas(int width, int height) : width_(width), height_(height), values_(size(), -1.0f) {}
 
   void draw(const FieldTriangle& triangle, const Sampler& sampler) {
+    bool drawn = false;
     for_texel_rows(triangle.texel, 1, [&](std::int64_t y, std::int64_t begin, std::int64_t end) {
       const int row = wrapped_texel(y, height_, sampler.wrap_v);
+      drawn = true;
       for (std::int64_t x = begin; x < end; ++x) {
         put(wrapped_texel(x, width_, sampler.wrap_u), row,
             triangle.at(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5));
       }
     });
+    if (drawn) return;
     // Triangles between texel centres leave their mark as well.
-    for (std::size_t k = 0; k < 3; ++k) {
-      put(wrapped_texel(static_cast<std::int64_t>(std::floor(triangle.texel[k].x)), width_, sampler.wrap_u),
-          wrapped_texel(static_cast<std::int64_t>(std::floor(triangle.texel[k].y)), height_, sampler.wrap_v),
-          triangle.value[k]);
-    }
+    const Vec2d middle = (triangle.texel[0] + triangle.texel[1] + triangle.texel[2]) * (1.0 / 3);
+    put(wrapped_texel(static_cast<std::int64_t>(std::floor(middle.x)), width_, sampler.wrap_u),
+        wrapped_texel(static_cast<std::int64_t>(std::floor(middle.y)), height_, sampler.wrap_v),
+        (triangle.value[0] + triangle.value[1] + triangle.value[2]) / 3);
   }
 
   void grow() {
@@ -104,59 +109,94 @@ Canvas canvas_for(const EncodedImage& image, int number) {
   return {std::max(info.width / divisor, 1), std::max(info.height / divisor, 1)};
 }
 
-/// Draws one part of a mesh.
-void draw_part(const TriMesh& mesh, std::size_t part, const UvMap& map, const VertexField& field,
-               const Sampler& sampler, Canvas& canvas) {
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    if (mesh.face_part[f] != part) continue;
-    const auto uv = map.triangle(f);
-    if (!uv) continue;
-    FieldTriangle triangle;
-    double extent = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle.texel[k] = {(*uv)[k].x * canvas.width(), (*uv)[k].y * canvas.height()};
-      triangle.value[k] = field[mesh.triangles[f][k]];
-      extent = std::max({extent, std::abs(triangle.texel[k].x - triangle.texel[0].x),
-                         std::abs(triangle.texel[k].y - triangle.texel[0].y)});
-    }
-    if (extent <= kMostTexels) canvas.draw(triangle, sampler);
+/// How far a triangle is shrunk along an axis of `size` texels.
+double shrink(double a, double b, double c, int size) {
+  const double extent = std::max({a, b, c}) - std::min({a, b, c});
+  const double most = std::min(kMostTexels, kMostRepeats * size);
+  return extent > most ? most / extent : 1;
+}
+
+/// The texture that is a part's base colour; none if its triangles have no place in one.
+const TextureRef* base_color(const Model& model, const TriMesh& mesh, const Part& part) {
+  if (part.raw || part.material < 0) return nullptr;
+  const auto& ref = model.materials[static_cast<std::size_t>(part.material)].base_color;
+  if (!ref || ref->texture < 0 || UvMap(mesh, *ref).layer == nullptr) return nullptr;
+  return model.textures[static_cast<std::size_t>(ref->texture)].image >= 0 ? &*ref : nullptr;
+}
+
+/// How the triangles of a part lie in the image that is drawn.
+struct PartPlace {
+  UvMap map;
+  Sampler sampler;
+};
+
+/// [#parts]; none for those that lie elsewhere.
+std::vector<std::optional<PartPlace>> places(const Model& model, const TriMesh& mesh, int image) {
+  std::vector<std::optional<PartPlace>> result(mesh.parts.size());
+  for (std::size_t p = 0; p < result.size(); ++p) {
+    const TextureRef* const ref = base_color(model, mesh, mesh.parts[p]);
+    if (ref == nullptr) continue;
+    const Texture& texture = model.textures[static_cast<std::size_t>(ref->texture)];
+    if (texture.image != image) continue;
+    result[p] = {UvMap(mesh, *ref), {}};
+    if (texture.sampler >= 0) result[p]->sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
   }
+  return result;
+}
+
+void draw_face(const TriMesh& mesh, std::uint32_t face, const PartPlace& place, const VertexField& field,
+               Canvas& canvas) {
+  const auto uv = place.map.triangle(face);
+  if (!uv) return;
+  FieldTriangle triangle;
+  auto& texel = triangle.texel;
+  for (std::size_t k = 0; k < 3; ++k) {
+    texel[k] = {(*uv)[k].x * canvas.width(), (*uv)[k].y * canvas.height()};
+    triangle.value[k] = field[mesh.triangles[face][k]];
+  }
+  const double x = shrink(texel[0].x, texel[1].x, texel[2].x, canvas.width()),
+               y = shrink(texel[0].y, texel[1].y, texel[2].y, canvas.height());
+  for (std::size_t k = 1; k < 3; ++k)
+    texel[k] = {texel[0].x + x * (texel[k].x - texel[0].x), texel[0].y + y * (texel[k].y - texel[0].y)};
+  canvas.draw(triangle, place.sampler);
 }
 
 }  // namespace
 
-std::vector<TextureSpaceMap> texture_space_maps(const Model& model, const std::vector<VertexField>& fields,
-                                                Context& context) {
-  std::map<int, Canvas> canvases;
-  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
-    const TriMesh& mesh = model.meshes[m].surface;
-    for (std::size_t p = 0; p < mesh.parts.size(); ++p) {
-      context.advance_or_throw("texture map",
-                               static_cast<double>(m) / static_cast<double>(model.meshes.size()));
-      if (mesh.parts[p].raw || mesh.parts[p].material < 0) continue;
-      const auto& ref = model.materials[static_cast<std::size_t>(mesh.parts[p].material)].base_color;
-      if (!ref || ref->texture < 0) continue;
-      const Texture& texture = model.textures[static_cast<std::size_t>(ref->texture)];
-      const UvMap map(mesh, *ref);
-      if (texture.image < 0 || map.layer == nullptr) continue;
-      if (!canvases.contains(texture.image)) {
-        const EncodedImage& image = model.images[static_cast<std::size_t>(texture.image)];
-        canvases.emplace(texture.image, canvas_for(image, texture.image));
-      }
-      const Sampler sampler =
-          texture.sampler >= 0 ? model.samplers[static_cast<std::size_t>(texture.sampler)] : Sampler{};
-      draw_part(mesh, p, map, fields[m], sampler, canvases.at(texture.image));
+std::vector<int> texture_space_images(const Model& model) {
+  std::set<int> images;
+  for (const Mesh& mesh : model.meshes) {
+    const TriMesh& surface = mesh.surface;
+    std::vector<bool> used(surface.parts.size(), false);
+    for (const std::uint32_t part : surface.face_part) used[part] = true;
+    for (std::size_t p = 0; p < used.size(); ++p) {
+      const TextureRef* const ref = used[p] ? base_color(model, surface, surface.parts[p]) : nullptr;
+      if (ref != nullptr) images.insert(model.textures[static_cast<std::size_t>(ref->texture)].image);
     }
   }
-  if (canvases.empty())
+  if (images.empty())
     throw Error(ErrorKind::usage, "no triangle has a texture as its base colour", {},
                 "there is no texture space to draw a map in");
-  std::vector<TextureSpaceMap> maps;
-  for (auto& [image, canvas] : canvases) {
-    for (int i = 0; i < kGutter; ++i) canvas.grow();
-    maps.push_back({image, canvas.image()});
+  return {images.begin(), images.end()};
+}
+
+Image8 texture_space_map(const Model& model, const std::vector<VertexField>& fields, int image,
+                         Context& context) {
+  constexpr std::uint32_t kFacesAtOnce = 1 << 8;  // between two looks whether to go on
+  check_fields(model, fields);
+  Canvas canvas = canvas_for(model.images[static_cast<std::size_t>(image)], image);
+  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+    const TriMesh& mesh = model.meshes[m].surface;
+    const std::vector<std::optional<PartPlace>> place = places(model, mesh, image);
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+      if (f % kFacesAtOnce == 0)
+        context.advance_or_throw("texture map",
+                                 static_cast<double>(m) / static_cast<double>(model.meshes.size()));
+      if (place[mesh.face_part[f]]) draw_face(mesh, f, *place[mesh.face_part[f]], fields[m], canvas);
+    }
   }
-  return maps;
+  for (int i = 0; i < kGutter; ++i) canvas.grow();
+  return canvas.image();
 }
 
 }  // namespace fovea

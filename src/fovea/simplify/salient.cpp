@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fovea/base/error.h"
+#include "fovea/model/check_fields.h"
 #include "fovea/surface/curvature.h"
 #include "fovea/surface/pose.h"
 #include "fovea/surface/scene_surface.h"
@@ -18,6 +19,7 @@ constexpr double kYangAmplifier = 20;  // κ
 constexpr double kYangExponent = 3;    // ζ
 constexpr double kLeeAmplifier = 100;  // λ
 constexpr double kLeastSaliency = 1e-3;
+constexpr double kLeastWeight = 1e-6;  // strong powers would fall below what floats hold
 
 /// The paper's weights, before they are scaled.
 std::vector<double> weights(std::span<const float> saliency, float threshold, SaliencyWeighting weighting) {
@@ -49,29 +51,32 @@ OptionList describe(SalientOptions& o) {
 
 Importance salient_importance(const Model& model, const std::vector<VertexField>& saliency,
                               const SalientOptions& options, const Context& context) {
+  check_fields(model, saliency);
   const SceneSurface scene = scene_surface(model, rest_pose(model));
   const VertexField all = joined(saliency);
-  if (all.size() != scene.surface.positions.size())
-    throw Error(ErrorKind::usage, "saliency is not of this model's meshes", "saliency");
   const VertexField areas = vertex_areas(scene.surface, Adjacency(scene.surface, context), context);
   const double share[] = {kThreshold};
   const float threshold = percentiles(all.values(), areas.values(), share)[0];
   const std::vector<double> raw = weights(all.values(), threshold, options.weighting);
-  VertexField field(all.size());
+  std::vector<double> powers;
   double sum = 0, area = 0;
   for (std::size_t v = 0; v < raw.size(); ++v) {
-    const double w = std::pow(raw[v], options.strength), a = static_cast<double>(areas.values()[v]);
-    field.values()[v] = static_cast<float>(w);
-    sum += a * w;
+    const auto a = static_cast<double>(areas.values()[v]);
+    powers.push_back(std::pow(raw[v], options.strength));
+    sum += a * powers[v];
     area += a;
   }
-  const auto scale = static_cast<float>(sum > 0 ? area / sum : 1);
-  for (float& w : field.values()) w *= scale;
+  const double scale = sum > 0 ? area / sum : 1;
+  VertexField field(all.size());
+  for (std::size_t v = 0; v < powers.size(); ++v)
+    field.values()[v] = static_cast<float>(std::max(scale * powers[v], kLeastWeight));
   return split(scene, field);
 }
 
 Importance product(const Importance& a, const Importance& b) {
   if (a.empty() || b.empty()) return a.empty() ? b : a;
+  const auto refuse = [] { throw Error(ErrorKind::usage, "weights of different models are multiplied"); };
+  if (a.size() != b.size()) refuse();
   Importance result = a;
   for (std::size_t m = 0; m < result.size(); ++m) {
     if (b[m].empty()) continue;
@@ -79,6 +84,7 @@ Importance product(const Importance& a, const Importance& b) {
       result[m] = b[m];
       continue;
     }
+    if (result[m].size() != b[m].size()) refuse();
     for (std::size_t v = 0; v < result[m].size(); ++v) result[m].values()[v] *= b[m].values()[v];
   }
   return result;

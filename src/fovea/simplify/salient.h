@@ -25,11 +25,13 @@ OptionList describe(SalientOptions& options);
 
 /// Weights of vertices by their saliency, [#meshes][#V], scaled so that their mean over the surface is 1 and
 /// errors keep their meaning. Percentiles are by area over the whole scene, at rest. Saliency below 0.001
-/// counts as that, as a weight of 0 would let triangles degenerate. O(#V log #V + #F).
+/// counts as that, as a weight of 0 would let triangles degenerate. Throws Error(usage) for saliency of
+/// another model. O(#V log #V + #F).
 Importance salient_importance(const Model& model, const std::vector<VertexField>& saliency,
                               const SalientOptions& options, const Context& context);
 
-/// Both, multiplied; either may be empty.
+/// Both, multiplied; either may be empty, or have empty fields. Throws Error(usage) if they are of different
+/// models.
 Importance product(const Importance& a, const Importance& b);
 
 }  // namespace fovea
