@@ -96,6 +96,12 @@ class Simplify : public Verb {
       throw Error(ErrorKind::usage, "no target is given", {},
                   "give --ratio, --triangles, --error or --error-abs, for example --ratio 0.1 to keep 10 %");
     }
+    const bool weighted =
+        salient_options_.weighting != SaliencyWeighting::yang || salient_options_.strength != 1;
+    if (weighted && (saliency_ == SaliencySource::none || saliency_ == SaliencySource::chosen)) {
+      throw Error(ErrorKind::usage, "--saliency-weighting and --saliency-strength need a preset",
+                  "--saliency", "name one, for example --saliency yang; auto finds the strength itself");
+    }
     check_input(input_);
     check_output(output_, {input_}, write_options_.force);
   }

@@ -126,6 +126,10 @@ TEST(ModelSaliency, NothingThatCountsIsRefused) {
   SaliencyOptions even;
   even.entropy_window = 8;
   EXPECT_THROW(found(test::model_of(test::cube()), even), Error);
+  SaliencyOptions moment;
+  moment.pose.animation = 0;
+  moment.key_poses = 3;
+  EXPECT_THROW(found(test::skinned_model(8), moment), Error);
   SaliencyOptions negative;
   negative.height = -1;
   EXPECT_THROW(found(test::model_of(test::cube()), negative), Error);

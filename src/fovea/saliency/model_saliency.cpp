@@ -386,6 +386,9 @@ ModelSaliency model_saliency(const Model& model, const SaliencyOptions& options,
   if (options.entropy_window % 2 == 0)
     throw Error(ErrorKind::usage, "the window of entropy has an even side", "entropy-window");
   check(options.pose);
+  if (options.pose.animation && (options.key_poses > 1 || !poses.empty()))
+    throw Error(ErrorKind::usage, "one moment of an animation and several poses are asked for", "animation",
+                "leave out --animation, or --key-poses and further files");
   return Maker(model, options, context).run(poses);
 }
 
