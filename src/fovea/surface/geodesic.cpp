@@ -238,8 +238,7 @@ void GeodesicSearch::cross_edge(std::uint32_t half_edge, const Window& window) {
   // Squares are compared where they can be: most windows end here.
   const double least2 = nearest * nearest + window.source.y * window.source.y, left = radius_ - window.before;
   if (least2 > left * left || is_useless(window)) return;
-  bucket(window.before + std::sqrt(least2))
-      .windows.emplace_back(window.half_edge, window.begin, window.end, window.source, window.before);
+  bucket(window.before + std::sqrt(least2)).windows.push_back(window);
 }
 
 /// Whether every line of the window comes later than a path over an end of the edge (Xin and Wang 2009,

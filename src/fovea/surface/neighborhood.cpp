@@ -11,6 +11,7 @@
 #include "fovea/surface/curvature.h"
 #include "fovea/surface/diffusion.h"
 #include "fovea/surface/geodesic.h"
+#include "fovea/surface/sphere_sums.h"
 
 namespace fovea {
 
@@ -21,81 +22,6 @@ namespace {
 constexpr std::size_t kGrain = 1 << 9;
 /// More vertices to the area than this many times the mean, or fewer, are not told apart by heat.
 constexpr double kMostDensity = 100;
-
-/// Points sorted into the cells of a regular grid, a few to the largest radius.
-class PointGrid {
- public:
-  /// Of the vertices that have triangles.
-  PointGrid(const Surface& surface, const Adjacency& adjacency, double radius) : surface_(surface) {
-    Box box;
-    for (const Vec3f& p : surface.positions) box.add(Vec3d(p));
-    low_ = box.low;
-    // No more cells along an axis than numbers of a cell have room for.
-    cell_ = std::max(radius / kCellsPerRadius, box.diagonal() / kMostCells);
-    for (std::uint32_t v = 0; v < surface.positions.size(); ++v) {
-      if (adjacency.corners(v).empty()) continue;
-      const Vec3d at = scaled(v);
-      entries_.push_back({key(whole(at.x), whole(at.y), whole(at.z)), surface.positions[v], v});
-    }
-    std::sort(entries_.begin(), entries_.end());
-  }
-
-  /// Calls f(vertex, squared distance) for those within the radius, in a fixed order.
-  template <class F>
-  void for_near(std::uint32_t v, double radius, F&& f) const {
-    const Vec3d p = surface_.position(v), at = scaled(v);
-    const double reach = cell_ > 0 ? radius / cell_ : 0;
-    for (std::int64_t z = first(at.z - reach); z <= whole(at.z + reach); ++z) {
-      const double dz = gap(at.z, z);
-      for (std::int64_t y = first(at.y - reach); y <= whole(at.y + reach); ++y) {
-        const double dy = gap(at.y, y), left2 = reach * reach - dy * dy - dz * dz;
-        if (left2 < -kSlack) continue;
-        // Cells in a row have numbers in a row.
-        const double left = std::sqrt(std::max(left2, 0.0)) + kSlack;
-        const std::uint64_t last = key(whole(at.x + left), y, z);
-        auto entry = std::lower_bound(entries_.begin(), entries_.end(), key(first(at.x - left), y, z),
-                                      [](const Entry& e, std::uint64_t k) { return e.key < k; });
-        for (; entry != entries_.end() && entry->key <= last; ++entry) {
-          const double d2 = length_squared(Vec3d(entry->position) - p);
-          if (d2 <= radius * radius) f(entry->vertex, d2);
-        }
-      }
-    }
-  }
-
- private:
-  static constexpr int kBits = 20;
-  static constexpr double kMostCells = (1 << kBits) - 64;
-  static constexpr double kCellsPerRadius = 4;
-  static constexpr double kSlack = 1e-6;  // of a cell, for rounding
-  struct Entry {
-    std::uint64_t key;
-    Vec3f position;
-    std::uint32_t vertex;
-    friend bool operator<(const Entry& a, const Entry& b) {
-      return a.key != b.key ? a.key < b.key : a.vertex < b.vertex;
-    }
-  };
-
-  /// A vertex in cells from the corner of the box; nothing is below 0.
-  Vec3d scaled(std::uint32_t v) const { return cell_ > 0 ? (surface_.position(v) - low_) / cell_ : Vec3d(); }
-  static std::int64_t whole(double x) { return static_cast<std::int64_t>(x); }
-  static std::int64_t first(double x) { return x > 0 ? whole(x) : 0; }
-  /// From x to the cell, 0 inside.
-  static double gap(double x, std::int64_t cell) {
-    const auto c = static_cast<double>(cell);
-    return x < c ? c - x : x > c + 1 ? x - c - 1 : 0;
-  }
-  static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
-    return static_cast<std::uint64_t>(z) << (2 * kBits) | static_cast<std::uint64_t>(y) << kBits |
-           static_cast<std::uint64_t>(x);
-  }
-
-  const Surface& surface_;
-  Vec3d low_;
-  double cell_ = 1;
-  std::vector<Entry> entries_;
-};
 
 /// exp(−x / 2) for x up to a limit, by a table: to 10⁻⁷.
 class Gaussian {
@@ -155,6 +81,14 @@ class Averager {
   void add_beyond(std::size_t scale, double distance2, Sample sample) {
     add(scale, std::exp(-0.5 * distance2 * precisions_[scale]), sample);
   }
+  /// What has been added up elsewhere, [#scales][#fields + #sets].
+  void add(const std::vector<double>& sums) {
+    const std::size_t numbers = sums.size() / precisions_.size();
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const std::size_t n = i % numbers;
+      sums_[i / numbers * width_ + n / 2][n % 2] += sums[i];
+    }
+  }
   double average(std::size_t field, std::size_t scale) const {
     const Sample sums(sums_.data() + scale * width_, width_);
     return number(sums, field) / number(sums, weights_.set_of.size() + weights_.set_of[field]);
@@ -177,7 +111,8 @@ class Averager {
 /// The samples at the vertices.
 class Samples {
  public:
-  Samples(std::span<const VertexField> fields, const Weights& weights) : width_(fovea::width(weights)) {
+  Samples(std::span<const VertexField> fields, const Weights& weights)
+      : width_(fovea::width(weights)), numbers_(fields.size() + weights.sets.size()) {
     const std::size_t count = weights.sets[0].size();
     values_.resize(count * width_, Double2{});
     // What counts for nothing still counts where there is nothing else.
@@ -194,9 +129,18 @@ class Samples {
   }
   Sample operator[](std::size_t v) const { return {values_.data() + v * width_, width_}; }
   std::size_t width() const { return width_; }
+  /// One by one, [#fields + #sets][#V].
+  std::vector<std::vector<float>> columns() const {
+    std::vector<std::vector<float>> columns(numbers_);
+    for (std::size_t n = 0; n < numbers_; ++n) {
+      for (std::size_t i = 0; i < values_.size(); i += width_)
+        columns[n].push_back(static_cast<float>(number({values_.data() + i, width_}, n)));
+    }
+    return columns;
+  }
 
  private:
-  std::size_t width_;
+  std::size_t width_, numbers_;
   std::vector<Double2> values_;  // [#V][width]
 };
 
@@ -397,17 +341,18 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
     });
     return results;
   }
-  const PointGrid grid(surface, adjacency, radius);
-  const auto add_sphere = [&](std::uint32_t v, Averager& averager) {
-    grid.for_near(v, radius, [&](std::uint32_t w, double d2) { averager.add(d2, samples[w]); });
+  const SphereSums spheres(surface, adjacency, samples.columns(), sigmas, cutoff);
+  const auto add_sphere = [&, sums = std::vector<double>()](std::uint32_t v, Averager& averager) mutable {
+    spheres.around(v, sums);
+    averager.add(sums);
   };
   if (neighborhood.distance == DistanceKind::euclidean) {
     run([&] { return add_sphere; });
   } else {
     const WindowRim window(surface, adjacency, samples, sigmas, cutoff);
     run([&] {
-      return [&add_sphere, rim = window](std::uint32_t v, Averager& averager) mutable {
-        add_sphere(v, averager);
+      return [sphere = add_sphere, rim = window](std::uint32_t v, Averager& averager) mutable {
+        sphere(v, averager);
         rim.add(v, averager);
       };
     });
