@@ -39,7 +39,7 @@ SaliencyOptions preset(SaliencyPreset which) {
   return options;
 }
 
-/// Shape alone by heat flow: what the papers' times are for.
+/// Shape alone by diffusion: what the papers' times are for.
 SaliencyOptions shape_by_diffusion() {
   SaliencyOptions options = preset(SaliencyPreset::munaretti);
   options.distance = DistanceKind::diffusion;
@@ -227,7 +227,7 @@ void print_times(const Task& task) {
   fmt::print(
       "Seconds of saliency, {} threads, model loaded; best of {}. Bytes per vertex: peak of the default, the "
       "decoded textures among them.\n\n"
-      "| model | triangles | shape by heat flow | fovea | yang | lee | munaretti (exact geodesics) | bytes "
+      "| model | triangles | shape by diffusion | fovea | yang | lee | munaretti (exact geodesics) | bytes "
       "per "
       "vertex |\n"
       "|---|--:|--:|--:|--:|--:|--:|--:|\n",

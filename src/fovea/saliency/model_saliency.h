@@ -18,7 +18,7 @@ namespace fovea {
 
 /// Ways to tell where people look.
 enum class SaliencyPreset {
-  fovea,      ///< Ours: shape and texture by heat flow, and how the model stands before people.
+  fovea,      ///< Ours: shape and texture by diffusion, and how the model stands before people.
   yang,       ///< Yang et al. 2016: curvature and texture over local filter windows.
   lee,        ///< Lee, Varshney, Jacobs 2005: curvature over straight distances.
   munaretti,  ///< Munaretti 2007: curvature over geodesic distances.

@@ -9,8 +9,8 @@
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
 #include "fovea/surface/curvature.h"
-#include "fovea/surface/diffusion.h"
 #include "fovea/surface/geodesic.h"
+#include "fovea/surface/spectral_filter.h"
 #include "fovea/surface/sphere_sums.h"
 
 namespace fovea {
@@ -20,8 +20,10 @@ namespace {
 /// Vertices whose neighbourhoods one thread finds together: few, as some meshes are a hundred times as dense
 /// in places, and not fewer, as a geodesic search has arrays of the size of the mesh.
 constexpr std::size_t kGrain = 1 << 9;
-/// More vertices to the area than this many times the mean, or fewer, are not told apart by heat.
+/// More weight to the area than this many times the mean, or less than one part in it, the filter does not
+/// tell apart.
 constexpr double kMostDensity = 100;
+constexpr float kLeastDensity = 0.01f;
 
 /// exp(−x / 2) for x up to a limit, by a table: to 10⁻⁷.
 class Gaussian {
@@ -212,14 +214,8 @@ class WindowRim {
   std::vector<Double2> mean_;  // the sample at the crossing at hand
 };
 
-/// Part of σ² that a Gaussian over a surface keeps as its variance when it is cut off at c σ.
-double kept_variance(double c) {
-  const double edge = std::exp(-c * c / 2);
-  return 1 - c * c / 2 * edge / (1 - edge);
-}
-
-/// What vertices count for over what heat counts them for, in units of its mean and within bounds.
-VertexField heat_densities(const VertexField& areas, const VertexField& weights) {
+/// What vertices count for over what the filter counts them for, in units of its mean and within bounds.
+VertexField relative_weights(const VertexField& areas, const VertexField& weights) {
   double area = 0, weight = 0;
   for (std::size_t v = 0; v < areas.size(); ++v) {
     if (!(areas.values()[v] > 0)) continue;
@@ -236,20 +232,31 @@ VertexField heat_densities(const VertexField& areas, const VertexField& weights)
   return densities;
 }
 
-/// An empty set of weights is the area that heat counts by itself.
-std::vector<std::vector<VertexField>> diffused(const Surface& surface, const Adjacency& adjacency,
+/// Least and greatest value where there is area.
+std::pair<float, float> range(const VertexField& field, const VertexField& areas) {
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    if (!(areas.values()[v] > 0)) continue;
+    low = std::min(low, field.values()[v]);
+    high = std::max(high, field.values()[v]);
+  }
+  return {low, high};
+}
+
+/// An empty set of weights is the area that the filter counts by itself.
+std::vector<std::vector<VertexField>> filtered(const Surface& surface, const Adjacency& adjacency,
                                                std::span<const VertexField> fields,
                                                std::span<const double> sigmas, double cutoff,
                                                const Weights& weights, const Context& context) {
-  std::vector<double> times;
-  for (const double sigma : sigmas) times.push_back(kept_variance(cutoff) * sigma * sigma / 2);
-  const HeatFlow heat(surface, adjacency, context);
-  const VertexField& areas = heat.areas();
+  std::vector<Response> responses;
+  for (const double sigma : sigmas) responses.push_back(gaussian_response(sigma, cutoff));
+  const SpectralFilter filter(surface, adjacency, context);
+  const VertexField& areas = filter.areas();
   std::vector<VertexField> dense(fields.begin(), fields.end());
   std::vector<std::size_t> density_of(weights.sets.size(), 0);  // 0: none
   for (std::size_t set = 0; set < weights.sets.size(); ++set) {
     if (weights.sets[set].empty()) continue;
-    const VertexField density = heat_densities(areas, weights.sets[set]);
+    const VertexField density = relative_weights(areas, weights.sets[set]);
     for (std::size_t f = 0; f < fields.size(); ++f) {
       if (weights.set_of[f] != set) continue;
       for (std::size_t v = 0; v < areas.size(); ++v) dense[f].values()[v] *= density.values()[v];
@@ -257,14 +264,16 @@ std::vector<std::vector<VertexField>> diffused(const Surface& surface, const Adj
     density_of[set] = dense.size();
     dense.push_back(density);
   }
-  std::vector<std::vector<VertexField>> results = heat.run(dense, times, context);
+  std::vector<std::vector<VertexField>> results = filter.run(dense, responses, context);
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const std::size_t density = density_of[weights.set_of[f]];
-    if (density == 0) continue;
-    for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto [low, high] = range(fields[f], areas);
+    for (std::size_t i = 0; i < sigmas.size(); ++i) {
       for (std::size_t v = 0; v < areas.size(); ++v) {
+        if (!(areas.values()[v] > 0)) continue;
         float& x = results[f][i].values()[v];
-        x = areas.values()[v] > 0 ? x / results[density][i].values()[v] : fields[f].values()[v];
+        if (density > 0) x /= std::max(results[density][i].values()[v], kLeastDensity);
+        x = std::clamp(x, low, high);
       }
     }
   }
@@ -272,7 +281,7 @@ std::vector<std::vector<VertexField>> diffused(const Surface& surface, const Adj
   return results;
 }
 
-/// What vertices count for if nothing else is given; empty if that is the area that heat counts.
+/// What vertices count for if nothing else is given; empty if that is the area that the filter counts.
 VertexField own_weights(const Surface& surface, const Adjacency& adjacency, const Neighborhood& neighborhood,
                         const Context& context) {
   if (neighborhood.weight == VertexWeight::one) return VertexField(surface.positions.size(), 1.0f);
@@ -307,7 +316,7 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
   const Weights counted =
       merged(fields.size(), weights, own_weights(surface, adjacency, neighborhood, context));
   if (neighborhood.distance == DistanceKind::diffusion)
-    return diffused(surface, adjacency, fields, sigmas, cutoff, counted, context);
+    return filtered(surface, adjacency, fields, sigmas, cutoff, counted, context);
   const double radius = cutoff * sigmas.back();
   const std::size_t count = surface.positions.size();
   std::vector<std::vector<VertexField>> results(fields.size(),

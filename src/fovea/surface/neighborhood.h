@@ -14,7 +14,7 @@ enum class DistanceKind {
   euclidean,  ///< In a straight line through space.
   geodesic,   ///< Over the surface, exactly (geodesic.h).
   window,     ///< In a straight line, within the local filter window of Yang et al. (2016).
-  diffusion,  ///< Over the surface, by heat flow (diffusion.h): for large meshes.
+  diffusion,  ///< Over the surface, by filtering its spectrum (spectral_filter.h): fast.
 };
 
 /// What a vertex counts for in an average.
@@ -26,8 +26,7 @@ enum class VertexWeight {
 /// What surrounds a vertex, and how much of it counts.
 struct Neighborhood {
   DistanceKind distance = DistanceKind::diffusion;
-  double cutoff =
-      2;  ///< Gaussians end at this many widths; by `diffusion` one flows as far in the mean square.
+  double cutoff = 2;  ///< Gaussians end at this many widths.
   VertexWeight weight = VertexWeight::area;
 };
 
@@ -46,7 +45,7 @@ struct Neighborhood {
 /// area counts as no less than 1 / 100 and no more than 100 times its mean.
 ///
 /// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what
-/// is within the largest radius of every vertex; by `diffusion` some hundred products with a sparse matrix.
+/// is within the largest radius of every vertex; by `diffusion` some dozens of products with a sparse matrix.
 std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, const Adjacency& adjacency,
                                                         std::span<const VertexField> fields,
                                                         std::span<const double> sigmas,

@@ -1,4 +1,4 @@
-#include "fovea/surface/diffusion.h"
+#include "fovea/surface/spectral_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ VertexField flow(const Surface& surface, const VertexField& field, double time, 
   Context context;
   context.threads = threads;
   const Adjacency adjacency(surface, context);
-  const double times[] = {time};
-  return HeatFlow(surface, adjacency, context).run({&field, 1}, times, context)[0][0];
+  const Response heat = heat_response(time);
+  return SpectralFilter(surface, adjacency, context).run({&field, 1}, {&heat, 1}, context)[0][0];
 }
 
 VertexField noise(std::size_t count) {
@@ -28,7 +28,7 @@ VertexField noise(std::size_t count) {
   return field;
 }
 
-TEST(HeatFlow, OnAPlaneAPointBecomesAGaussian) {
+TEST(SpectralFilter, OnAPlaneAPointBecomesAGaussian) {
   const Surface surface = surface_of(test::grid(100, 100));
   const std::uint32_t middle = 50 * 101 + 50;
   ASSERT_NEAR(surface.position(middle).x, 0.5, 1e-6);
@@ -44,7 +44,7 @@ TEST(HeatFlow, OnAPlaneAPointBecomesAGaussian) {
   }
 }
 
-TEST(HeatFlow, KeepsConstantsAndBounds) {
+TEST(SpectralFilter, KeepsConstantsAndBounds) {
   for (const test::NamedMesh& named : test::all_families()) {
     const Surface surface = surface_of(named.mesh);
     const std::size_t count = surface.positions.size();
@@ -56,7 +56,7 @@ TEST(HeatFlow, KeepsConstantsAndBounds) {
   }
 }
 
-TEST(HeatFlow, OnASphereHarmonicsFadeAtTheirRate) {
+TEST(SpectralFilter, OnASphereHarmonicsFadeAtTheirRate) {
   // x, y, z are eigenfunctions of the Laplacian with eigenvalue −2. Of an icosphere with edges of 0.07 it is
   // less by about their square: some thousandths at time 0.7.
   const Surface surface = surface_of(test::icosphere(4));
@@ -69,14 +69,15 @@ TEST(HeatFlow, OnASphereHarmonicsFadeAtTheirRate) {
   }
 }
 
-TEST(HeatFlow, TimesAddUp) {
+TEST(SpectralFilter, TimesAddUp) {
   const Surface surface = surface_of(test::torus(40, 24));
   Context context;
   const Adjacency adjacency(surface, context);
-  const HeatFlow heat(surface, adjacency, context);
+  const SpectralFilter filter(surface, adjacency, context);
   const VertexField field = noise(surface.positions.size());
-  const double times[] = {0.001, 0.004, 0.02};
-  const auto all = heat.run({&field, 1}, times, context)[0];
+  const double times[] = {0.004, 0.001, 0.02};
+  const Response responses[] = {heat_response(times[0]), heat_response(times[1]), heat_response(times[2])};
+  const auto all = filter.run({&field, 1}, responses, context)[0];
   for (std::size_t i = 0; i < 3; ++i) {  // whatever the series are cut off for
     const VertexField alone = flow(surface, field, times[i], 3);
     for (std::size_t v = 0; v < field.size(); ++v)
@@ -85,20 +86,55 @@ TEST(HeatFlow, TimesAddUp) {
   EXPECT_EQ(flow(surface, field, 0.02, 1), flow(surface, field, 0.02, 3));
 }
 
-TEST(HeatFlow, FieldsFlowTogetherAsEachAlone) {
+TEST(SpectralFilter, OnAPlaneAWaveKeepsItsResponse) {
+  // cos(kx) under the average over a disc is itself times the response to k². Away from the border, on a grid
+  // of eight vertices to the shortest wave: the lattice is not a plane by some hundredths.
+  const Surface surface = surface_of(test::grid(100, 100));
+  for (const double wave_number : {20.0, 40.0, 75.0}) {
+    VertexField field(surface.positions.size());
+    for (std::uint32_t v = 0; v < field.size(); ++v)
+      field.values()[v] = static_cast<float>(std::cos(wave_number * surface.position(v).x));
+    for (const double cutoff : {1.0, 2.0}) {
+      const Context context;
+      const Adjacency adjacency(surface, context);
+      const Response average = gaussian_response(0.04, cutoff);
+      const VertexField found =
+          SpectralFilter(surface, adjacency, context).run({&field, 1}, {&average, 1}, context)[0][0];
+      const double response = average(wave_number * wave_number);
+      for (std::uint32_t v = 0; v < field.size(); ++v) {
+        const Vec3d p = surface.position(v);
+        if (std::max(std::abs(p.x - 0.5), std::abs(p.y - 0.5)) > 0.4) continue;
+        EXPECT_NEAR(found.values()[v], response * static_cast<double>(field.values()[v]), 0.03);
+      }
+    }
+  }
+}
+
+TEST(SpectralFilter, TheResponseOfAGaussianIsItsTransform) {
+  const Response narrow = gaussian_response(0.1, 1), wide = gaussian_response(0.1, 8);
+  EXPECT_DOUBLE_EQ(narrow(0), 1);
+  // One that hardly ends is exp(−λ σ² / 2).
+  for (const double eigenvalue : {10.0, 100.0, 400.0})
+    EXPECT_NEAR(wide(eigenvalue), std::exp(-eigenvalue * 0.005), 1e-4);
+  // Long waves lose λ / 4 of the mean square radius: of what is left within σ, σ² (2 − e^−½ / (1 − e^−½)).
+  const double edge = std::exp(-0.5), mean_square = 0.01 * (2 - edge / (1 - edge));
+  EXPECT_NEAR(1 - narrow(1), mean_square / 4, 1e-6);
+}
+
+TEST(SpectralFilter, FieldsFlowTogetherAsEachAlone) {
   const Surface surface = surface_of(test::torus(40, 24));
   const Context context;
-  const HeatFlow heat(surface, Adjacency(surface, context), context);
+  const SpectralFilter filter(surface, Adjacency(surface, context), context);
   std::vector<VertexField> fields;
   for (int i = 0; i < 6; ++i) {
     fields.push_back(noise(surface.positions.size()));
     for (float& x : fields.back().values()) x = x * static_cast<float>(i + 1) + 1;
   }
-  const double times[] = {0.001, 0.01};
-  const auto together = heat.run(fields, times, context);
+  const Response responses[] = {heat_response(0.001), gaussian_response(0.1, 2)};
+  const auto together = filter.run(fields, responses, context);
   ASSERT_EQ(together.size(), fields.size());
   for (std::size_t i = 0; i < fields.size(); ++i)
-    EXPECT_EQ(together[i], heat.run({&fields[i], 1}, times, context)[0]) << i;
+    EXPECT_EQ(together[i], filter.run({&fields[i], 1}, responses, context)[0]) << i;
 }
 
 }  // namespace
