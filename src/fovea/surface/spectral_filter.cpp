@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "fovea/base/parallel.h"
@@ -21,8 +20,6 @@ constexpr double kFastest = 20;
 constexpr double kMostDetail = 1e9;
 /// What the terms that are left out add up to.
 constexpr double kPrecision = 1e-6;
-/// A series is not made longer; ten times what a million triangles need.
-constexpr std::size_t kMostTerms = 1 << 14;
 /// Of the integral over a disc.
 constexpr int kRings = 200;
 
@@ -40,47 +37,65 @@ double cotangent(Vec3d p, Vec3d a, Vec3d b) {
   return area > 0 ? std::max(dot(a - p, b - p) / area, 0.0) : 0;
 }
 
-/// Coefficients of the Chebyshev polynomials of 2 λ / `greatest` − 1 in a series for the response, without a
-/// tail of `kPrecision`. Interpolates it at more and more of Chebyshev's points until there is such a tail.
-std::vector<double> chebyshev_series(const Response& response, double greatest) {
-  for (std::size_t n = 16;; n *= 2) {
-    std::vector<double> values(n), series(n, 0), cosines(4 * n);
-    for (std::size_t i = 0; i < 4 * n; ++i)
-      cosines[i] = std::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(2 * n));
-    for (std::size_t j = 0; j < n; ++j) values[j] = response(greatest / 2 * (1 + cosines[2 * j + 1]));
-    for (std::size_t k = 0; k < n; ++k) {
-      for (std::size_t j = 0; j < n; ++j) series[k] += values[j] * cosines[k * (2 * j + 1) % (4 * n)];
-      series[k] *= (k == 0 ? 1.0 : 2.0) / static_cast<double>(n);
-    }
-    // Few points may miss what is left of waves as long as the surface; the constant shows it.
-    double constant = 0;
-    for (std::size_t k = 0; k < n; ++k) constant += k % 2 == 0 ? series[k] : -series[k];
-    const bool reaches_zero = std::abs(constant - response(0)) < 10 * kPrecision;
-    double tail = 0;
-    while (series.size() > 1 && tail + std::abs(series.back()) < kPrecision) {
-      tail += std::abs(series.back());
-      series.pop_back();
-    }
-    if ((reaches_zero && series.size() <= n * 3 / 4) || n >= kMostTerms) return series;
+/// Bessel functions of the first kind at z > 0, of the orders from 0 until they are nothing, by Miller's
+/// recurrence downwards: f_k−1 = 2k / z f_k ± f_k+1, with + for the modified ones, scaled so that f_0 + 2 Σ
+/// f_k (ordinary: of even k) is 1, which for the modified ones divides them by exp(z).
+std::vector<double> bessel(double z, bool modified) {
+  // Beyond, ordinary ones fall faster than exponentially, modified ones like exp(−k² / 2z).
+  const auto start = static_cast<std::size_t>(modified ? 30 + 10 * std::sqrt(z) : 30 + z + 10 * std::cbrt(z));
+  std::vector<double> values(start + 1, 0);
+  double above = 0, here = 1e-30, sum = 0;
+  for (std::size_t k = start; k > 0; --k) {
+    values[k] = here;
+    if (modified || k % 2 == 0) sum += 2 * here;
+    const double below = 2 * static_cast<double>(k) / z * here + (modified ? above : -above);
+    above = here;
+    here = below;
+    if (std::abs(here) < 1e200) continue;
+    for (std::size_t i = k; i <= start; ++i) values[i] *= 1e-200;
+    above *= 1e-200, here *= 1e-200, sum *= 1e-200;
   }
+  values[0] = here;
+  sum += here;
+  for (double& value : values) value /= sum;
+  return values;
+}
+
+/// The series from what stands for (−1)^k and, but for the first, 2; without its tail.
+std::vector<double> finished(std::vector<double> series) {
+  for (std::size_t k = 1; k < series.size(); ++k) series[k] *= k % 2 == 0 ? 2 : -2;
+  double tail = 0;
+  while (series.size() > 1 && tail + std::abs(series.back()) < kPrecision) {
+    tail += std::abs(series.back());
+    series.pop_back();
+  }
+  return series;
 }
 
 }  // namespace
 
 Response heat_response(double time) {
-  return [time](double eigenvalue) { return std::exp(-eigenvalue * time); };
+  return [time](double greatest) {
+    const double z = time * greatest / 2;
+    return z > 0 ? finished(bessel(z, true)) : std::vector<double>{1};
+  };
 }
 
 Response gaussian_response(double sigma, double cutoff) {
-  return [=](double eigenvalue) {
-    const double step = cutoff * sigma / kRings, wave_number = std::sqrt(eigenvalue);
-    double sum = 0, weights = 0;
+  return [=](double greatest) {
+    std::vector<double> series{0};
+    double weights = 0;
     for (int i = 0; i < kRings; ++i) {
-      const double r = step * (i + 0.5), weight = r * std::exp(-r * r / (2 * sigma * sigma));
-      sum += weight * std::cyl_bessel_j(0.0, wave_number * r);
+      const double r = cutoff * sigma * (i + 0.5) / kRings,
+                   weight = r * std::exp(-r * r / (2 * sigma * sigma));
+      const double z = std::sqrt(greatest) * r / 2;
+      const std::vector<double> ring = z > 0 ? bessel(z, false) : std::vector<double>{1};
+      series.resize(std::max(series.size(), ring.size()), 0);
+      for (std::size_t k = 0; k < ring.size(); ++k) series[k] += weight * ring[k] * ring[k];
       weights += weight;
     }
-    return sum / weights;
+    for (double& x : series) x /= weights;
+    return finished(std::move(series));
   };
 }
 
@@ -142,7 +157,7 @@ std::vector<std::vector<VertexField>> SpectralFilter::run(std::span<const Vertex
                                                           std::span<const Response> responses,
                                                           const Context& context) const {
   std::vector<std::vector<double>> series;
-  for (const Response& response : responses) series.push_back(chebyshev_series(response, greatest_));
+  for (const Response& response : responses) series.push_back(response(greatest_));
   std::vector<std::vector<VertexField>> results(
       fields.size(), std::vector<VertexField>(series.size(), VertexField(leave_.size())));
   const std::span<std::vector<VertexField>> all = results;

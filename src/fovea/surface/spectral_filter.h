@@ -10,14 +10,18 @@
 
 namespace fovea {
 
-/// What a filter leaves of a wave over a surface: a smooth function of the wave's eigenvalue λ ≥ 0 under −Δ,
-/// the square of its wave number.
-using Response = std::function<double(double eigenvalue)>;
+/// What a filter leaves of waves over a surface, by their eigenvalues λ ≥ 0 under −Δ, the squares of their
+/// wave numbers: a function of λ in 0 … `greatest`, as the coefficients of the Chebyshev polynomials T_k of
+/// 2 λ / greatest − 1, without a tail of 10⁻⁶.
+using Response = std::function<std::vector<double>(double greatest)>;
 
-/// Heat that flows for a time: exp(−λ t), a Gaussian of the width √(2t).
+/// Heat that flows for a time: exp(−λ t), a Gaussian of the width √(2t). The coefficients are
+/// (−1)^k exp(−z) I_k(z), z = t · greatest / 2, twice but for the first.
 Response heat_response(double time);
 /// The average under a Gaussian of width σ that ends at cutoff · σ: on a plane its Hankel transform,
 ///   ∫ g(r) J₀(√λ r) r dr / ∫ g(r) r dr over r from 0 to cutoff · σ, g(r) = exp(−r² / 2σ²).
+/// By Graf's addition theorem the coefficients of J₀(√λ r) are (−1)^k J_k(z)², z = √greatest · r / 2, twice
+/// but for the first.
 Response gaussian_response(double sigma, double cutoff);
 
 /// Filters for fields over a surface by the spectrum of its cotangent Laplacian (Pinkall and Polthier 1993),
@@ -32,10 +36,10 @@ class SpectralFilter {
   /// O(#F), parallel. About 60 bytes per vertex.
   SpectralFilter(const Surface& surface, const Adjacency& adjacency, const Context& context);
 
-  /// Each field under each response: F(−Δ) f by the Chebyshev series of F, to 10⁻⁶ of the field's range.
-  /// [#fields][#responses]. Each term is a product with a sparse matrix, which all responses and four fields
-  /// share; a Gaussian of radius r takes about ½ r √(greatest eigenvalue) terms, heat two to four times as
-  /// many. Parallel; the same bits for any number of threads.
+  /// Each field under each response: F(−Δ) f by the Chebyshev series of F. [#fields][#responses]. Each term
+  /// is a product with a sparse matrix, which all responses and four fields share; a Gaussian of radius r
+  /// takes about ½ r √(greatest eigenvalue) terms, heat two to four times as many. Parallel; the same bits
+  /// for any number of threads.
   std::vector<std::vector<VertexField>> run(std::span<const VertexField> fields,
                                             std::span<const Response> responses,
                                             const Context& context) const;
