@@ -8,7 +8,9 @@
 #include "fovea/base/error.h"
 #include "fovea/saliency/contrast.h"
 #include "fovea/saliency/mesh_saliency.h"
+#include "fovea/saliency/surface_signals.h"
 #include "fovea/sample/sample.h"
+#include "fovea/surface/curvature.h"
 #include "support/meshes.h"
 
 namespace fovea {
@@ -68,6 +70,33 @@ TEST(ModelSaliency, YangIsTheSumOfBothMapsWithTheirPeaksPromoted) {
   const auto [low, high] = std::minmax_element(expected.begin(), expected.end());
   for (std::size_t v = 0; v < t.size(); ++v)
     EXPECT_NEAR(yang.saliency[0].values()[v], (expected[v] - *low) / (*high - *low), 1e-5);
+}
+
+TEST(ModelSaliency, YangCountsVerticesInShapeAndTexelsInTextures) {
+  const Model model = vase();
+  const ModelSaliency yang = found(model, with(SaliencyPreset::yang));
+  Context context;
+  const SurfaceSignals signals = surface_signals(model, 0, {}, context);
+  const Surface surface = surface_of(model.meshes[0].surface);
+  const Adjacency adjacency(surface, context);
+  const VertexField areas = vertex_areas(surface, adjacency, context);
+  double area = 0;
+  for (const float a : areas.values()) area += static_cast<double>(a);
+  const double radius =
+      std::sqrt(4 * area / static_cast<double>(surface.triangles.size()) / (3 * std::sqrt(3.0)));
+  const ScalePair pairs[] = {{2 * radius, 4 * radius}};
+  const Neighborhood window{DistanceKind::window, 1, VertexWeight::one};
+  const auto contrast = [&](const VertexField& signal, std::span<const VertexField> weights) {
+    return center_surround(surface, adjacency, {&signal, 1}, pairs, window, context, weights)[0][0];
+  };
+  const auto expect_near = [](const VertexField& a, const VertexField& b) {
+    // Sums in another order of vertices, of values of up to a few bits or tens of curvature.
+    for (std::size_t v = 0; v < a.size(); ++v)
+      EXPECT_NEAR(a.values()[v], b.values()[v], 1e-4 * (1 + std::abs(b.values()[v])));
+  };
+  expect_near(map(yang, "entropy-contrast-1")[0], contrast(signals.entropy, {&signals.texels, 1}));
+  expect_near(map(yang, "curvature-contrast-1")[0], contrast(map(yang, "curvature")[0], {}));
+  EXPECT_NE(contrast(signals.entropy, {&signals.texels, 1}), contrast(signals.entropy, {}));
 }
 
 TEST(ModelSaliency, YangsTextureWeighsColorAgainstEntropy) {

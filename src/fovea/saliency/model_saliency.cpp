@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "fovea/base/error.h"
@@ -138,8 +139,9 @@ class Maker {
     if (!surface_.triangles.empty()) {
       add_contrasts(scenes);
       add_viewing();
+      const float low = least();
       for (std::uint32_t v = 0; v < sum_.size(); ++v) {
-        if (adjacency.corners(v).empty()) sum_.values()[v] = least();
+        if (adjacency.corners(v).empty()) sum_.values()[v] = low;
       }
     }
     scale_to_one(sum_);
@@ -237,14 +239,16 @@ class Maker {
     wanted.roughness = wanted.metalness = recipe_.roughness > 0;
     wanted.normal_detail = recipe_.normal_map > 0;
     const std::vector<SurfaceSignals> meshes = surface_signals(model_, wanted, context_);
-    const auto use = [&](const std::string& name, const VertexField SurfaceSignals::*signal) {
-      std::vector<float> values;
-      for (const SurfaceSignals& mesh : meshes)
-        values.insert(values.end(), (mesh.*signal).values().begin(), (mesh.*signal).values().end());
-      names.push_back(name);
-      VertexField& field = signals.emplace_back(values.size());
-      for (std::size_t i = 0; i < values.size(); ++i) field.values()[i] = values[order_.vertices[i].index()];
+    const auto whole = [&](const VertexField SurfaceSignals::*signal) {
+      std::vector<VertexField> parts;
+      for (const SurfaceSignals& mesh : meshes) parts.push_back(mesh.*signal);
+      return in_order(joined(parts), order_);
     };
+    const auto use = [&](const std::string& name, const VertexField SurfaceSignals::*signal) {
+      names.push_back(name);
+      signals.push_back(whole(signal));
+    };
+    texels_ = whole(&SurfaceSignals::texels);
     for (const SurfaceSignals& mesh : meshes) result_.textured = result_.textured || mesh.textured;
     if (recipe_.texture > 0 && result_.textured) {
       use("intensity", &SurfaceSignals::intensity);

@@ -223,6 +223,7 @@ VertexField relative_weights(const VertexField& areas, const VertexField& weight
     weight += static_cast<double>(weights.values()[v]);
   }
   VertexField densities(areas.size(), 1.0f);
+  if (!(weight > 0)) return densities;  // nothing counts more than another
   for (std::size_t v = 0; v < areas.size(); ++v) {
     if (!(areas.values()[v] > 0)) continue;
     const double density = static_cast<double>(weights.values()[v]) / static_cast<double>(areas.values()[v]);

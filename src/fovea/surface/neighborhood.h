@@ -41,8 +41,8 @@ struct Neighborhood {
 /// on, and d the distance to the straight crossing in mean edge lengths (the paper does not say its unit).
 ///
 /// `weights`, one [#V] and above 0 for each field, replace what `neighborhood` says of w; an empty one leaves
-/// it. By `diffusion` with weights other than areas, the heat of f w / area over that of w / area, where w /
-/// area counts as no less than 1 / 100 and no more than 100 times its mean.
+/// it. By `diffusion` with weights other than areas, the filtered f w / area over the filtered w / area,
+/// where w / area counts as no less than 1 / 100 and no more than 100 times its mean.
 ///
 /// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what
 /// is within the largest radius of every vertex; by `diffusion` some dozens of products with a sparse matrix.
