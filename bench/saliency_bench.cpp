@@ -1,6 +1,8 @@
 // What saliency costs, and what it does for simplification, as Markdown.
 // saliency_bench [--quick] [MODEL-NAME...]   times
 // saliency_bench --quality [MODEL-NAME...]   simplification with and without it; some minutes
+// saliency_bench --distances [MODEL-NAME...]   mesh saliency by other distances against exact geodesics;
+// minutes
 
 #include <fmt/format.h>
 
@@ -16,8 +18,11 @@
 
 #include "fovea/base/error.h"
 #include "fovea/judge/compare.h"
+#include "fovea/saliency/agreement.h"
+#include "fovea/saliency/mesh_saliency.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/auto_saliency.h"
+#include "fovea/surface/curvature.h"
 #include "fovea/surface/geodesic.h"
 #include "fovea/surface/local_order.h"
 #include "fovea/surface/scene_surface.h"
@@ -113,6 +118,45 @@ void print_geodesics(const Subject& subject) {
   }
   fmt::print("\n");
   std::fflush(stdout);
+}
+
+// --- Distances ------------------------------------------------------------------------------------------
+
+/// Rank correlation by area of mesh saliency over two kinds of distances.
+double same_ranks(const Surface& surface, const VertexField& tested, const VertexField& exact,
+                  const Context& context) {
+  const VertexField areas = vertex_areas(surface, Adjacency(surface, context), context);
+  return agreement(tested.values(), exact.values(), areas.values()).spearman;
+}
+
+void print_distances(const Subject& subject) {
+  Context context;
+  context.threads = kThreads;
+  const Model model = subject.make();
+  const Surface surface = scene_surface(model, rest_pose(model)).surface;
+  fmt::print("| {} | {} |", subject.name, triangle_count(model));
+  for (const double cutoff : {1.0, 2.0}) {
+    const auto of = [&](DistanceKind kind) {
+      return mesh_saliency(surface, {{kind, cutoff, VertexWeight::one}, kMunarettiSaliency.unit_rel}, context)
+          .saliency;
+    };
+    const VertexField exact = of(DistanceKind::geodesic);
+    fmt::print(" {:.3f} | {:.3f} |", same_ranks(surface, of(DistanceKind::diffusion), exact, context),
+               same_ranks(surface, of(DistanceKind::euclidean), exact, context));
+    std::fflush(stdout);
+  }
+  fmt::print("\n");
+}
+
+void print_all_distances(const std::vector<Subject>& subjects) {
+  fmt::print(
+      "Rank correlation (Spearman, by area) of mesh saliency over other distances with that over exact "
+      "geodesics, neighbourhoods cut off at one and at two widths.\n\n"
+      "| model | triangles | at 1 σ: diffusion | straight | at 2 σ: diffusion | straight |\n"
+      "|---|--:|--:|--:|--:|--:|\n");
+  for (const Subject& subject : subjects) {
+    if (triangle_count(subject.make()) <= kMostExact) print_distances(subject);
+  }
 }
 
 // --- Pictures -------------------------------------------------------------------------------------------
@@ -211,6 +255,7 @@ void print_quality(const std::vector<Subject>& subjects) {
 struct Task {
   int repeats = 3;
   bool quality = false;
+  bool distances = false;
   std::vector<std::string> only;
 };
 
@@ -232,7 +277,7 @@ void print_times(const Task& task) {
       "vertex |\n"
       "|---|--:|--:|--:|--:|--:|--:|--:|\n",
       kThreads, task.repeats);
-  const std::vector<Subject> subjects = chosen(speed_subjects(), task);
+  const std::vector<Subject> subjects = chosen(saliency_subjects(), task);
   for (const Subject& subject : subjects) print_time(subject, task.repeats);
   fmt::print(
       "\nExact geodesics from one vertex within a part of the diagonal (vertices reached), one thread, mean "
@@ -250,12 +295,16 @@ int run(int count, char** words) {
         task.repeats = 1;
       } else if (std::strcmp(words[i], "--quality") == 0) {
         task.quality = true;
+      } else if (std::strcmp(words[i], "--distances") == 0) {
+        task.distances = true;
       } else {
         task.only.emplace_back(words[i]);
       }
     }
     if (task.quality) {
       print_quality(chosen(textured_subjects(), task));
+    } else if (task.distances) {
+      print_all_distances(chosen(scan_subjects(), task));
     } else {
       print_times(task);
     }

@@ -147,6 +147,17 @@ std::vector<Subject> speed_subjects() {
                    "textured/ToyCar.glb"});
 }
 
+std::vector<Subject> saliency_subjects() {
+  std::vector<Subject> all = speed_subjects();
+  if (data_folder()) all.push_back(subjects({"textured/AcousticGuitar.glb"})[0]);
+  return all;
+}
+
+std::vector<Subject> scan_subjects() {
+  return subjects({"scans/bunny.ply", "scans/armadillo.ply", "scans/hand.ply", "scans/hammer.ply",
+                   "scans/nefertiti.ply", "scans/dragon.ply"});
+}
+
 std::vector<Subject> render_subjects() {
   return subjects({"textured/DamagedHelmet.glb", "textured/AcousticGuitar.glb", "textured/ToyCar.glb",
                    "scans/dragon.ply"});

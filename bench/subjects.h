@@ -23,6 +23,12 @@ std::optional<std::filesystem::path> data_folder();
 /// Scans and textured models of the data folder, or Fovea's own samples without one.
 std::vector<Subject> speed_subjects();
 
+/// Those of `speed_subjects` and a guitar of 56,000 triangles with a texture of 3276².
+std::vector<Subject> saliency_subjects();
+
+/// Scans of the data folder, or Fovea's own samples without one.
+std::vector<Subject> scan_subjects();
+
 /// What is drawn: textured models and a scan of the data folder, or Fovea's own samples.
 std::vector<Subject> render_subjects();
 

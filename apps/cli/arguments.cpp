@@ -15,6 +15,11 @@ namespace {
 
 std::string help_hint(const std::string& verb) { return fmt::format("see: fovea {} --help", verb); }
 
+// What may follow an option whose value can be left out: names of choices have no dots or slashes, files do.
+bool looks_like_choice(const std::string& word) {
+  return !word.empty() && word[0] != '-' && word.find_first_of("./\\") == std::string::npos;
+}
+
 // CLI11 counts a flag up for --name and down for --no-name and --name=false.
 void add_flag(CLI::App& app, Option& option, const std::string& names) {
   bool* value = std::get<bool*>(option.value);
@@ -78,6 +83,20 @@ void Arguments::set(Option& option, const std::string& text) const {
   }
 }
 
+std::vector<std::string> Arguments::with_values(std::vector<std::string> words) const {
+  for (const OptionGroup& group : groups_) {
+    for (const Option& option : group.options) {
+      const auto* named = std::get_if<Option::Choice>(&option.value);
+      if (named == nullptr || named->alone.empty()) continue;
+      for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] != "--" + option.name) continue;
+        if (i + 1 == words.size() || !looks_like_choice(words[i + 1])) words[i] += "=" + named->alone;
+      }
+    }
+  }
+  return words;
+}
+
 void Arguments::parse(const std::vector<std::string>& words, const std::string& verb) {
   CLI::App app;
   app.set_help_flag();
@@ -102,7 +121,9 @@ void Arguments::parse(const std::vector<std::string>& words, const std::string& 
     }
   }
   try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    std::vector<std::string> reversed = with_values(words);
+    std::reverse(reversed.begin(), reversed.end());
+    app.parse(std::move(reversed));
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string text = error.what();
     throw Error(ErrorKind::usage, "needs a value", text.substr(0, text.find(':')), help_hint(verb));

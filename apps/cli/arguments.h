@@ -44,6 +44,8 @@ class Arguments {
 
  private:
   std::vector<std::string> flags() const;
+  /// With the values of flags that stand alone.
+  std::vector<std::string> with_values(std::vector<std::string> words) const;
   [[noreturn]] void refuse(const std::string& word, const std::string& verb) const;
   void set(Option& option, const std::string& text) const;
 

@@ -26,7 +26,8 @@ std::string value_name(const Option& option) {
   if (std::holds_alternative<std::string*>(option.value)) {
     return option.unit.empty() ? "TEXT" : upper(option.unit);
   }
-  if (std::holds_alternative<Option::Choice>(option.value)) return option.range_text();
+  if (const auto* named = std::get_if<Option::Choice>(&option.value))
+    return named->alone.empty() ? option.range_text() : "[" + option.range_text() + "]";
   const bool whole = std::holds_alternative<std::int64_t*>(option.value) ||
                      std::holds_alternative<std::optional<std::int64_t>*>(option.value);
   return whole ? "N" : "X";

@@ -56,9 +56,9 @@ class Simplify : public Verb {
         "Saliency",
         {{"saliency",
           "Spend triangles where people look: by a preset of \"fovea saliency\", or by what measures "
-          "best on pictures of this model (auto, which takes several times as long). None by default, "
-          "as that measured best over many models.",
-          choice(saliency_, {"none", "auto", "fovea", "yang", "lee", "munaretti"}), ""}});
+          "best on pictures of this model (auto, which takes several times as long and is meant if no "
+          "name is given). None by default: over many models no fixed preset measured better.",
+          choice(saliency_, {"none", "auto", "fovea", "yang", "lee", "munaretti"}, "auto"), ""}});
     arguments.add("Saliency", describe(salient_options_));
     OptionList saliency = describe(saliency_options_);
     std::erase_if(saliency, [](const Option& o) { return o.name != "key-poses" && o.name != "up"; });

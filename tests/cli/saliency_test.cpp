@@ -436,6 +436,23 @@ TEST_F(SimplifySaliency, AutoSaysWhatItTriedAndChose) {
   EXPECT_EQ(read_text(out("auto.glb")), read_text(out("b.glb")));
 }
 
+TEST_F(SimplifySaliency, AloneIsAutoWhereverItStands) {
+  const auto source = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"-o", out("alone.glb"), "--ratio", "0.2", "--json", "--force"});
+    const Outcome outcome = fovea(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.json()["options"]["saliency"];
+  };
+  EXPECT_EQ(source({"simplify", "--saliency", grid_}), "auto") << "what follows is a file";
+  EXPECT_EQ(source({"simplify", grid_, "--saliency"}), "auto") << "an option follows";
+  EXPECT_EQ(source({"simplify", "--saliency", "lee", grid_}), "lee");
+  EXPECT_EQ(source({"simplify", grid_, "--saliency=lee"}), "lee");
+  EXPECT_EQ(simplify("last.glb", {"--saliency"}).json()["options"]["saliency"], "auto");
+  const Outcome misspelt = fovea({"simplify", "--saliency", "leee", grid_, "-o", out("no.glb")});
+  EXPECT_EQ(misspelt.code, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("'leee'"));
+}
+
 TEST_F(SimplifySaliency, GoesWithImportance) {
   const std::size_t count = model(grid_).meshes[0].surface.source_vertex.size();
   std::string csv;

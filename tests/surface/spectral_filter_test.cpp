@@ -13,12 +13,15 @@
 namespace fovea {
 namespace {
 
-VertexField flow(const Surface& surface, const VertexField& field, double time, int threads = 1) {
+/// A Gaussian that hardly ends, exp(−½ σ² λ) on any surface.
+Response wide(double sigma) { return gaussian_response(sigma, 6); }
+
+VertexField spread(const Surface& surface, const VertexField& field, double sigma, int threads = 1) {
   Context context;
   context.threads = threads;
   const Adjacency adjacency(surface, context);
-  const Response heat = heat_response(time);
-  return SpectralFilter(surface, adjacency, context).run({&field, 1}, {&heat, 1}, context)[0][0];
+  const Response average = wide(sigma);
+  return SpectralFilter(surface, adjacency, context).run({&field, 1}, {&average, 1}, context)[0][0];
 }
 
 /// The response at an eigenvalue, from its series up to 10⁴.
@@ -45,12 +48,12 @@ TEST(SpectralFilter, OnAPlaneAPointBecomesAGaussian) {
   VertexField field(surface.positions.size());
   field.values()[middle] = 1;
   const double sigma = 0.06;
-  const VertexField spread = flow(surface, field, sigma * sigma / 2);
-  const double peak = 1e-4 / (2 * 3.14159265 * sigma * sigma);  // the heat of one vertex's area
+  const VertexField after = spread(surface, field, sigma);
+  const double peak = 1e-4 / (2 * 3.14159265 * sigma * sigma);  // of one vertex's area
   for (std::uint32_t v = 0; v < surface.positions.size(); ++v) {
     const double r = length(surface.position(v) - surface.position(middle));
     // Six vertices to a width: the lattice is not a plane by some hundredths of the peak.
-    EXPECT_NEAR(spread.values()[v], peak * std::exp(-r * r / (2 * sigma * sigma)), 0.02 * peak) << r;
+    EXPECT_NEAR(after.values()[v], peak * std::exp(-r * r / (2 * sigma * sigma)), 0.02 * peak) << r;
   }
 }
 
@@ -58,42 +61,42 @@ TEST(SpectralFilter, KeepsConstantsAndBounds) {
   for (const test::NamedMesh& named : test::all_families()) {
     const Surface surface = surface_of(named.mesh);
     const std::size_t count = surface.positions.size();
-    const double time = 0.01 * diagonal(surface) * diagonal(surface);
-    const VertexField even = flow(surface, VertexField(count, 3.0f), time);
+    const double sigma = 0.14 * diagonal(surface);
+    const VertexField even = spread(surface, VertexField(count, 3.0f), sigma);
     for (const float x : even.values()) EXPECT_NEAR(x, 3, 1e-4) << named.name;
-    const VertexField before = noise(count), after = flow(surface, before, time);
+    const VertexField before = noise(count), after = spread(surface, before, sigma);
     for (const float x : after.values()) EXPECT_LE(std::abs(x), 1 + 1e-4) << named.name;
   }
 }
 
 TEST(SpectralFilter, OnASphereHarmonicsFadeAtTheirRate) {
   // x, y, z are eigenfunctions of the Laplacian with eigenvalue −2. Of an icosphere with edges of 0.07 it is
-  // less by about their square: some thousandths at time 0.7.
+  // less by about their square: some thousandths where σ is 1.2.
   const Surface surface = surface_of(test::icosphere(4));
   VertexField field(surface.positions.size());
   for (std::uint32_t v = 0; v < field.size(); ++v) field.values()[v] = surface.positions[v].z;
-  for (const double time : {0.01, 0.1, 0.7}) {
-    const VertexField after = flow(surface, field, time);
+  for (const double sigma : {0.15, 0.5, 1.2}) {
+    const VertexField after = spread(surface, field, sigma);
     for (std::uint32_t v = 0; v < field.size(); ++v)
-      EXPECT_NEAR(after.values()[v], std::exp(-2 * time) * surface.positions[v].z, 0.002);
+      EXPECT_NEAR(after.values()[v], std::exp(-sigma * sigma) * surface.positions[v].z, 0.002);
   }
 }
 
-TEST(SpectralFilter, TimesAddUp) {
+TEST(SpectralFilter, ResponsesShareTerms) {
   const Surface surface = surface_of(test::torus(40, 24));
   Context context;
   const Adjacency adjacency(surface, context);
   const SpectralFilter filter(surface, adjacency, context);
   const VertexField field = noise(surface.positions.size());
-  const double times[] = {0.004, 0.001, 0.02};
-  const Response responses[] = {heat_response(times[0]), heat_response(times[1]), heat_response(times[2])};
+  const double sigmas[] = {0.09, 0.045, 0.2};
+  const Response responses[] = {wide(sigmas[0]), wide(sigmas[1]), wide(sigmas[2])};
   const auto all = filter.run({&field, 1}, responses, context)[0];
   for (std::size_t i = 0; i < 3; ++i) {  // whatever the series are cut off for
-    const VertexField alone = flow(surface, field, times[i], 3);
+    const VertexField alone = spread(surface, field, sigmas[i], 3);
     for (std::size_t v = 0; v < field.size(); ++v)
       EXPECT_NEAR(all[i].values()[v], alone.values()[v], 2e-5);  // what the series leaves out
   }
-  EXPECT_EQ(flow(surface, field, 0.02, 1), flow(surface, field, 0.02, 3));
+  EXPECT_EQ(spread(surface, field, 0.2, 1), spread(surface, field, 0.2, 3));
 }
 
 TEST(SpectralFilter, OnAPlaneAWaveKeepsItsResponse) {
@@ -137,14 +140,13 @@ TEST(SpectralFilter, ResponsesAreTheirFormulas) {
       EXPECT_NEAR(value_at(gaussian_response(0.1, cutoff), eigenvalue), transform(0.1, cutoff, eigenvalue),
                   1e-4)
           << cutoff << " " << eigenvalue;  // rings are a two hundredth of the radius apart
-    EXPECT_NEAR(value_at(heat_response(0.01), eigenvalue), std::exp(-0.01 * eigenvalue), 2e-6);
   }
-  // A Gaussian that hardly ends is heat of its width.
+  // A Gaussian that hardly ends transforms to one.
   for (const double eigenvalue : {10.0, 100.0, 400.0})
-    EXPECT_NEAR(value_at(gaussian_response(0.1, 8), eigenvalue), std::exp(-eigenvalue * 0.005), 1e-3);
+    EXPECT_NEAR(value_at(wide(0.1), eigenvalue), std::exp(-eigenvalue * 0.005), 1e-3);
 }
 
-TEST(SpectralFilter, FieldsFlowTogetherAsEachAlone) {
+TEST(SpectralFilter, FieldsTogetherAreAsEachAlone) {
   const Surface surface = surface_of(test::torus(40, 24));
   const Context context;
   const SpectralFilter filter(surface, Adjacency(surface, context), context);
@@ -153,7 +155,7 @@ TEST(SpectralFilter, FieldsFlowTogetherAsEachAlone) {
     fields.push_back(noise(surface.positions.size()));
     for (float& x : fields.back().values()) x = x * static_cast<float>(i + 1) + 1;
   }
-  const Response responses[] = {heat_response(0.001), gaussian_response(0.1, 2)};
+  const Response responses[] = {wide(0.045), gaussian_response(0.1, 2)};
   const auto together = filter.run(fields, responses, context);
   ASSERT_EQ(together.size(), fields.size());
   for (std::size_t i = 0; i < fields.size(); ++i)

@@ -18,6 +18,7 @@ struct Option {
     std::vector<std::string> names;
     std::function<int()> get;
     std::function<void(int)> set;
+    std::string alone;  ///< The name meant by the flag without a value; empty if it needs one.
   };
   using Value = std::variant<bool*, std::int64_t*, double*, std::string*, std::optional<std::int64_t>*,
                              std::optional<double>*, Choice>;
@@ -43,11 +44,12 @@ struct Option {
 /// The options of one struct, in the order in which `--help` shows them.
 using OptionList = std::vector<Option>;
 
-/// Makes a Choice for an enum whose values count up from 0 in the order of `names`.
+/// Makes a Choice for an enum whose values count up from 0 in the order of `names`. `alone` is the name meant
+/// by the flag without a value, if it may be without.
 template <class Enum>
-Option::Choice choice(Enum& target, std::vector<std::string> names) {
+Option::Choice choice(Enum& target, std::vector<std::string> names, std::string alone = {}) {
   return {std::move(names), [&target] { return static_cast<int>(target); },
-          [&target](int index) { target = static_cast<Enum>(index); }};
+          [&target](int index) { target = static_cast<Enum>(index); }, std::move(alone)};
 }
 
 /// Checks every option; one Error(usage) lists all faults, a line each.

@@ -38,17 +38,15 @@ double cotangent(Vec3d p, Vec3d a, Vec3d b) {
 }
 
 /// Bessel functions of the first kind at z > 0, of the orders from 0 until they are nothing, by Miller's
-/// recurrence downwards: f_k−1 = 2k / z f_k ± f_k+1, with + for the modified ones, scaled so that f_0 + 2 Σ
-/// f_k (ordinary: of even k) is 1, which for the modified ones divides them by exp(z).
-std::vector<double> bessel(double z, bool modified) {
-  // Beyond, ordinary ones fall faster than exponentially, modified ones like exp(−k² / 2z).
-  const auto start = static_cast<std::size_t>(modified ? 30 + 10 * std::sqrt(z) : 30 + z + 10 * std::cbrt(z));
+/// recurrence downwards: J_k−1 = 2k / z J_k − J_k+1, scaled so that J_0 + 2 Σ J_2k is 1.
+std::vector<double> bessel(double z) {
+  const auto start = static_cast<std::size_t>(30 + z + 10 * std::cbrt(z));  // beyond they fall fast
   std::vector<double> values(start + 1, 0);
   double above = 0, here = 1e-30, sum = 0;
   for (std::size_t k = start; k > 0; --k) {
     values[k] = here;
-    if (modified || k % 2 == 0) sum += 2 * here;
-    const double below = 2 * static_cast<double>(k) / z * here + (modified ? above : -above);
+    if (k % 2 == 0) sum += 2 * here;
+    const double below = 2 * static_cast<double>(k) / z * here - above;
     above = here;
     here = below;
     if (std::abs(here) < 1e200) continue;
@@ -74,13 +72,6 @@ std::vector<double> finished(std::vector<double> series) {
 
 }  // namespace
 
-Response heat_response(double time) {
-  return [time](double greatest) {
-    const double z = time * greatest / 2;
-    return z > 0 ? finished(bessel(z, true)) : std::vector<double>{1};
-  };
-}
-
 Response gaussian_response(double sigma, double cutoff) {
   return [=](double greatest) {
     std::vector<double> series{0};
@@ -89,7 +80,7 @@ Response gaussian_response(double sigma, double cutoff) {
       const double r = cutoff * sigma * (i + 0.5) / kRings,
                    weight = r * std::exp(-r * r / (2 * sigma * sigma));
       const double z = std::sqrt(greatest) * r / 2;
-      const std::vector<double> ring = z > 0 ? bessel(z, false) : std::vector<double>{1};
+      const std::vector<double> ring = z > 0 ? bessel(z) : std::vector<double>{1};
       series.resize(std::max(series.size(), ring.size()), 0);
       for (std::size_t k = 0; k < ring.size(); ++k) series[k] += weight * ring[k] * ring[k];
       weights += weight;

@@ -15,9 +15,6 @@ namespace fovea {
 /// 2 λ / greatest − 1, without a tail of 10⁻⁶.
 using Response = std::function<std::vector<double>(double greatest)>;
 
-/// Heat that flows for a time: exp(−λ t), a Gaussian of the width √(2t). The coefficients are
-/// (−1)^k exp(−z) I_k(z), z = t · greatest / 2, twice but for the first.
-Response heat_response(double time);
 /// The average under a Gaussian of width σ that ends at cutoff · σ: on a plane its Hankel transform,
 ///   ∫ g(r) J₀(√λ r) r dr / ∫ g(r) r dr over r from 0 to cutoff · σ, g(r) = exp(−r² / 2σ²).
 /// By Graf's addition theorem the coefficients of J₀(√λ r) are (−1)^k J_k(z)², z = √greatest · r / 2, twice
@@ -38,8 +35,7 @@ class SpectralFilter {
 
   /// Each field under each response: F(−Δ) f by the Chebyshev series of F. [#fields][#responses]. Each term
   /// is a product with a sparse matrix, which all responses and four fields share; a Gaussian of radius r
-  /// takes about ½ r √(greatest eigenvalue) terms, heat two to four times as many. Parallel; the same bits
-  /// for any number of threads.
+  /// takes about ½ r √(greatest eigenvalue) terms. Parallel; the same bits for any number of threads.
   std::vector<std::vector<VertexField>> run(std::span<const VertexField> fields,
                                             std::span<const Response> responses,
                                             const Context& context) const;
