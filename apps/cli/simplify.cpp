@@ -57,7 +57,7 @@ class Simplify : public Verb {
         {{"saliency",
           "Spend triangles where people look: by a preset of \"fovea saliency\", or by what measures "
           "best on pictures of this model (auto, which takes several times as long and is meant if no "
-          "name is given). None by default: over many models no fixed preset measured better.",
+          "name is given). None by default: over many models no fixed preset measured clearly better.",
           choice(saliency_, {"none", "auto", "fovea", "yang", "lee", "munaretti"}, "auto"), ""}});
     arguments.add("Saliency", describe(salient_options_));
     OptionList saliency = describe(saliency_options_);
