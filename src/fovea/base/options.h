@@ -18,7 +18,7 @@ struct Option {
     std::vector<std::string> names;
     std::function<int()> get;
     std::function<void(int)> set;
-    std::string alone;  ///< The name meant by the flag without a value; empty if it needs one.
+    std::string alone{};  ///< The name meant by the flag without a value; empty if it needs one.
   };
   using Value = std::variant<bool*, std::int64_t*, double*, std::string*, std::optional<std::int64_t>*,
                              std::optional<double>*, Choice>;

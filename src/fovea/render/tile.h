@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "fovea/render/scan_convert.h"
 #include "fovea/render/screen.h"
 
 // Private to render: what covers the samples of a tile.
@@ -31,8 +32,8 @@ class TileSamples {
   /// Notes a blended triangle. To be called after all opaque ones are drawn.
   void blend(const ScreenTriangle& triangle, std::vector<BlendedSample>& out) const;
 
-  int width() const { return width_; }    ///< Samples.
-  int height() const { return height_; }  ///< Samples.
+  int width() const { return rect_.width; }    ///< Samples.
+  int height() const { return rect_.height; }  ///< Samples.
   std::uint32_t triangle(int x, int y) const { return triangle_[index(x, y)]; }
   float nearness(int x, int y) const { return nearness_[index(x, y)]; }
 
@@ -40,12 +41,8 @@ class TileSamples {
   static std::size_t index(int x, int y) {
     return static_cast<std::size_t>(y) * SampleGrid::kTileSamples + static_cast<std::size_t>(x);
   }
-  /// Calls span(y, x0, x1, plane of nearness) for the samples [x0, x1) that each row has.
-  template <class F>
-  void for_spans(const ScreenTriangle& triangle, F&& span) const;
 
-  int origin_x_ = 0, origin_y_ = 0;  // first sample in the grid
-  int width_ = 0, height_ = 0;
+  SampleRect rect_;  // in the grid
   int per_pixel_ = 1;
   std::array<float, std::size_t{SampleGrid::kTileSamples} * SampleGrid::kTileSamples> nearness_;
   std::array<std::uint32_t, std::size_t{SampleGrid::kTileSamples} * SampleGrid::kTileSamples> triangle_;

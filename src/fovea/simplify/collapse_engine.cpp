@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "fovea/simplify/edge_cost.h"
 #include "fovea/simplify/legality.h"
 #include "fovea/simplify/value_merge.h"
+#include "fovea/simplify/view_metric.h"
 
 namespace fovea {
 
@@ -42,19 +45,23 @@ struct Due {
 class Engine {
  public:
   Engine(CollapseState& state, std::uint64_t target, double max_error, const SimplifyOptions& options,
-         Context& context)
+         ViewMetric* views, Context& context)
       : state_(state),
         mesh_(state.mesh),
         target_(target),
         max_error_(max_error),
         options_(options),
+        views_(views),
         context_(context),
         edge_count_(static_cast<std::uint32_t>(mesh_.edges.size())),
         queue_(edge_count_ + state.components.count()),
         tries_(edge_count_, 0),
         cost_(state, options.placement),
         legality_(state),
-        merge_(state, options.placement) {}
+        merge_(state, options.placement) {
+    if (views_ == nullptr) return;
+    for (int i = 0; i < context.thread_count(); ++i) memory_.push_back(views_->make_memory(state));
+  }
 
   CollapseOutcome run() {
     fill_queue();
@@ -73,6 +80,9 @@ class Engine {
   void drop_dearer();
   void fetch_surroundings() const;
   void price(Due& due);
+  Candidate best_view_place(std::uint32_t e, const Quadric& q, ViewMetric::Memory& memory) const;
+  void price_by_views(std::span<const std::uint32_t> edges);
+  void price_around(std::uint32_t b);
   void try_edge(Due& due);
   bool is_dearer(const Due& due, double price);
   bool is_legal(std::uint32_t e, Vec3d p);
@@ -97,11 +107,13 @@ class Engine {
   const std::uint64_t target_;
   const double max_error_;
   const SimplifyOptions& options_;
+  ViewMetric* const views_;  // null: the quadric error alone
   Context& context_;
   const std::uint32_t edge_count_;
   CollapseQueue queue_;              // edges, then components
   std::vector<std::uint8_t> tries_;  // [#E], refusals since the last change around
   EdgeCost cost_;
+  std::vector<ViewMetric::Memory> memory_;  // [#threads] with views
   Legality legality_;
   ValueMerge merge_;
   std::vector<Due> batch_;
@@ -120,6 +132,12 @@ class Engine {
 };
 
 void Engine::fill_queue() {
+  if (views_ != nullptr) {
+    std::vector<std::uint32_t> all(edge_count_);
+    std::iota(all.begin(), all.end(), 0u);
+    price_by_views(all);
+    return;
+  }
   std::vector<float> cost(edge_count_);
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
@@ -133,6 +151,36 @@ void Engine::fill_queue() {
   if (options_.keep_topology || state_.components.count() < 2) return;
   for (std::uint32_t i = 0; i < state_.components.count(); ++i)
     queue_.set(edge_count_ + i, state_.vanish[i].cost);
+}
+
+/// The best place for an edge by what views lose there, at that price. Of half-edge collapses the cheaper.
+Candidate Engine::best_view_place(std::uint32_t e, const Quadric& q, ViewMetric::Memory& memory) const {
+  std::array<Candidate, 3> places{cost_.best_place(e, q)};
+  std::size_t count = std::isfinite(places[0].cost) ? 1 : 0;
+  if (options_.placement == Placement::half_edge) count = cost_.fallbacks(e, q, places.data());
+  Candidate best;
+  const auto [a, b] = mesh_.edges[e].ends;
+  for (std::size_t i = 0; i < count; ++i) {
+    memory.merge.plan(e, a, b, places[i].position);
+    const double price = views_->price(e, places[i], memory.merge, *memory.scratch);
+    if (price < best.cost) best = {price, places[i].position};
+  }
+  return best;
+}
+
+/// Prices edges and puts them into the queue, in parallel.
+void Engine::price_by_views(std::span<const std::uint32_t> edges) {
+  std::vector<Candidate> places(edges.size());
+  const std::size_t grain = (edges.size() + memory_.size() - 1) / memory_.size();
+  parallel_for(context_, edges.size(), grain, [&](std::size_t begin, std::size_t end) {
+    ViewMetric::Memory& memory = memory_[begin / grain];
+    for (std::size_t i = begin; i < end; ++i)
+      places[i] = best_view_place(edges[i], cost_.quadric(edges[i]), memory);
+  });
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    views_->note(edges[i], places[i]);
+    if (std::isfinite(places[i].cost)) queue_.set(edges[i], places[i].cost);
+  }
 }
 
 /// Room for the steps to the target, if there is one: most take two triangles.
@@ -175,7 +223,8 @@ StopReason Engine::loop() {
 /// Takes the next items out of the queue: those that cost about as much as the first.
 void Engine::take_batch() {
   batch_.clear();
-  while (batch_.size() < kBatch) {
+  const std::size_t most = views_ != nullptr ? 1 : kBatch;
+  while (batch_.size() < most) {
     const std::uint32_t item = queue_.first();
     if (item == kInvalid) break;
     const double cost = queue_.cost_floor(item);
@@ -197,7 +246,13 @@ void Engine::take_batch() {
 
 void Engine::price(Due& due) {
   due.quadric = cost_.quadric(due.item);
-  due.place = cost_.best_place(due.item, due.quadric);
+  if (views_ == nullptr) {
+    due.place = cost_.best_place(due.item, due.quadric);
+    return;
+  }
+  if (!views_->is_fresh(due.item))
+    views_->note(due.item, best_view_place(due.item, due.quadric, memory_[0]));
+  due.place = views_->noted(due.item);
 }
 
 /// Puts back the edges of the batch that cost more by now than they were queued for.
@@ -261,6 +316,8 @@ void Engine::try_edge(Due& due) {
   const std::size_t count = cost_.fallbacks(due.item, due.quadric, places.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_legal(due.item, places[i].position)) continue;
+    if (views_ != nullptr)
+      places[i].cost = views_->price(due.item, places[i], merge_, *memory_[0].scratch);
     take_or_requeue(due, places[i]);
     return;
   }
@@ -287,7 +344,8 @@ bool Engine::is_dearer(const Due& due, double price) {
 void Engine::take_or_requeue(const Due& due, const Candidate& where) {
   const bool ruins = legality_.topology() != Block::none || legality_.leaves_scrap();
   if (is_dearer(due, where.cost * (ruins ? kRuinPenalty : 1))) return;
-  const double error = std::sqrt(where.cost / std::max(due.quadric.weight, 1e-30));
+  const double squared = views_ != nullptr ? std::max(due.quadric.value(where.position), 0.0) : where.cost;
+  const double error = std::sqrt(squared / std::max(due.quadric.weight, 1e-30));
   if (error > max_error_) {
     over_error_ = true;
     return;
@@ -320,6 +378,7 @@ void Engine::try_vanish(std::uint32_t component) {
   step.kind = StepKind::vanish;
   step.mesh = state_.slot_of_face(ring_.front());
   const std::vector<std::uint32_t> faces = ring_;
+  if (views_ != nullptr) views_->lose(faces);
   for (const std::uint32_t f : faces) drop_face(f);
   finish_step(step, state_.vanish[component].error);
 }
@@ -336,6 +395,7 @@ void Engine::commit(std::uint32_t e, const Candidate& where, double error) {
   const MeshSlot& slot = state_.slots[m];
   const bool moved = !(where.position == mesh_.position(b));
 
+  if (views_ != nullptr) views_->before_collapse(a, b, where.position);
   merge_.apply(a, b, m, outcome_.record);
   dropped_.clear();
   drop_shared_faces(a, b);
@@ -349,7 +409,12 @@ void Engine::commit(std::uint32_t e, const Candidate& where, double error) {
   retire_values(a, b);
   cost_.forget(a);
   look_at_values(b);
-  revive_edges(b);
+  if (views_ != nullptr) {
+    views_->after_collapse(a, b);
+    price_around(b);
+  } else {
+    revive_edges(b);
+  }
   changed_.push_back(b);
 
   CollapseStep step;
@@ -488,6 +553,20 @@ void Engine::revive_edges(std::uint32_t b) {
   });
 }
 
+/// The views have changed around b: the edges at b get new prices now, those next to it when they come up.
+void Engine::price_around(std::uint32_t b) {
+  mesh_.vertices[b].refused = 0;
+  ring_.clear();
+  mesh_.for_ring(b, [&](std::uint32_t c) {
+    const CornerView at_c = mesh_.view(c);
+    for (const std::uint32_t e : {at_c.to_next, at_c.to_previous}) {
+      if (std::find(ring_.begin(), ring_.end(), e) == ring_.end()) ring_.push_back(e);
+      tries_[e] = 0;
+    }
+  });
+  price_by_views(ring_);
+}
+
 void Engine::finish_step(CollapseStep step, double error) {
   error_so_far_ = std::max(error_so_far_, error);
   CollapseRecord& record = outcome_.record;
@@ -516,8 +595,8 @@ void Engine::count_blocked() {
 }  // namespace
 
 CollapseOutcome collapse(CollapseState& state, std::uint64_t target_triangles, double max_error,
-                         const SimplifyOptions& options, Context& context) {
-  return Engine(state, target_triangles, max_error, options, context).run();
+                         const SimplifyOptions& options, ViewMetric* views, Context& context) {
+  return Engine(state, target_triangles, max_error, options, views, context).run();
 }
 
 }  // namespace fovea

@@ -9,6 +9,8 @@
 
 namespace fovea {
 
+class ViewMetric;
+
 /// What the collapse loop leaves behind.
 struct CollapseOutcome {
   CollapseRecord record;
@@ -39,7 +41,9 @@ struct CollapseOutcome {
 ///
 /// `state` is used up. Stops at `target_triangles`, or when every collapse left exceeds `max_error`
 /// (units of the scene's diagonal). Sequential, O(#steps · one-ring); the initial costs are parallel.
+///
+/// With `views` edges are priced by what these lose; else by the quadric error.
 CollapseOutcome collapse(CollapseState& state, std::uint64_t target_triangles, double max_error,
-                         const SimplifyOptions& options, Context& context);
+                         const SimplifyOptions& options, ViewMetric* views, Context& context);
 
 }  // namespace fovea

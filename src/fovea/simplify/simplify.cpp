@@ -6,11 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/simplify/collapse_engine.h"
+#include "fovea/simplify/view_metric.h"
 
 namespace fovea {
 
@@ -170,7 +172,7 @@ const char* to_string(StopReason reason) {
 
 OptionList describe(SimplifyOptions& o) {
   const double infinity = std::numeric_limits<double>::infinity();
-  return {
+  OptionList list{
       {"ratio", "Fraction of the triangles to keep: 0.1 keeps 10 %.", &o.ratio, "", 0, 1},
       {"triangles", "Triangles to keep, each mesh counted once however often it is shown.", &o.triangles,
        "triangles", 0, infinity},
@@ -196,7 +198,17 @@ OptionList describe(SimplifyOptions& o) {
       {"keep-topology",
        "Never close holes or handles and never drop a component; targets may become unreachable.",
        &o.keep_topology, ""},
+      {"metric",
+       "What a collapse costs: distance and attributes; or what a set of views loses, of the entropy of "
+       "texture regions or of triangles, or of the picture itself.",
+       choice(o.metric, {"quadric", "entropy", "polygon-entropy", "image"}), ""},
+      {"view-size", "Width and height of the views of a metric.", &o.view_size, "pixels", 16, 2048},
+      {"image-pass", "What the metric image compares: base colour alone, or under light.",
+       choice(o.image_pass, {"base-color", "lit"}), ""},
   };
+  const OptionList views = describe(o.views);
+  list.insert(list.end(), views.begin(), views.end());
+  return list;
 }
 
 SimplifyResult simplify(const Model& model, const SimplifyOptions& options, const Importance& importance,
@@ -215,8 +227,13 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
     result.triangles_target += target.value_or(0);
     CollapseState state =
         make_collapse_state(batch.meshes, batch.scales, batch.importance, diagonal, options, context);
-    CollapseOutcome outcome =
-        collapse(state, target.value_or(0), error_bound(options, diagonal), options, context);
+    std::unique_ptr<ViewMetric> views;
+    if (options.metric != Metric::quadric) {
+      views = std::make_unique<ViewMetric>(state, model, batch.mesh_index, batch.importance, options, context);
+    }
+    CollapseOutcome outcome = collapse(state, target.value_or(0), error_bound(options, diagonal), options,
+                                       views.get(), context);
+    views.reset();
     state = {};
     combine(result, outcome);
     levels.push_back(replay(batch.meshes, outcome.record, outcome.record.steps.size()));

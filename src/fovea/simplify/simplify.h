@@ -9,6 +9,7 @@
 #include "fovea/base/options.h"
 #include "fovea/model/field.h"
 #include "fovea/model/model.h"
+#include "fovea/render/view.h"
 #include "fovea/simplify/record.h"
 
 namespace fovea {
@@ -17,6 +18,20 @@ namespace fovea {
 enum class Placement {
   optimal,    ///< At the minimum of the error; falls back to the edge's ends and middle.
   half_edge,  ///< At one end of the edge: every vertex of the result is a vertex of the input.
+};
+
+/// What a collapse costs.
+enum class Metric {
+  quadric,          ///< Distance to the planes that a vertex stands for, attributes among them (quadric.h).
+  entropy,          ///< What views lose of viewpoint entropy, by the regions of textures,
+  polygon_entropy,  ///< or by triangles (Castelló et al. 2007).
+  image,            ///< What changes in pictures of the original.
+};
+
+/// What the pictures of `Metric::image` show.
+enum class ImagePass {
+  base_color,  ///< Base colour alone.
+  lit,         ///< Base colour under light, so that shape shows too.
 };
 
 /// What to simplify to, and what counts as an error. Targets given together: the first reached stops.
@@ -39,6 +54,11 @@ struct SimplifyOptions {
   double seam_weight = 1.0;
   /// Never move or remove vertices on open boundaries.
   bool lock_boundary = false;
+  Metric metric = Metric::quadric;
+  /// Where the other metrics look from: around the scene at rest, perspective.
+  ViewOptions views{.set = ViewSet::dodecahedron};
+  std::int64_t view_size = 256;  ///< Pixels along each side of a view.
+  ImagePass image_pass = ImagePass::lit;
   /// Never change the topology: no component vanishes, no hole or handle closes.
   bool keep_topology = false;
 };

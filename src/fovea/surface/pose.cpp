@@ -98,13 +98,6 @@ std::optional<Quat> sample_rotation(const AnimationSampler& sampler, double time
 
 // --- Surfaces -----------------------------------------------------------------------------------------
 
-/// Takes normals along: the cofactor matrix, turned so that normals keep their side when it mirrors.
-Vec3f transform_normal(const Mat4& a, Vec3f n) {
-  const Vec3d c0{a(0, 0), a(1, 0), a(2, 0)}, c1{a(0, 1), a(1, 1), a(2, 1)}, c2{a(0, 2), a(1, 2), a(2, 2)};
-  const double side = determinant3(a) < 0 ? -1 : 1;
-  return Vec3f(normalized((cross(c1, c2) * n.x + cross(c2, c0) * n.y + cross(c0, c1) * n.z) * side));
-}
-
 /// The matrices of a skin's joints, and which of them move a corner.
 class Skinning {
  public:
@@ -195,6 +188,14 @@ class Deformation {
     if (skinning_.empty()) return world_;
     return corner.valid() ? skinning_.at(corner) : skinning_.first_joint();
   }
+  /// Whether all vertices have the instance's own matrix.
+  bool is_rigid() const { return skinning_.empty() && targets_.empty(); }
+  /// What morph targets add to a vertex.
+  Vec3f offset(VertexId v) const {
+    Vec3f sum;
+    for (const Target& target : targets_) sum += target.positions[v.index()] * target.weight;
+    return sum;
+  }
   Vec3f position(VertexId v, CornerId corner) const {
     Vec3f p = mesh_.positions[v.index()];
     for (const Target& target : targets_) p += target.positions[v.index()] * target.weight;
@@ -234,6 +235,12 @@ std::vector<std::size_t> target_counts(const Model& model) {
 }
 
 }  // namespace
+
+Vec3f transform_normal(const Mat4& a, Vec3f n) {
+  const Vec3d c0{a(0, 0), a(1, 0), a(2, 0)}, c1{a(0, 1), a(1, 1), a(2, 1)}, c2{a(0, 2), a(1, 2), a(2, 2)};
+  const double side = determinant3(a) < 0 ? -1 : 1;
+  return Vec3f(normalized((cross(c1, c2) * n.x + cross(c2, c0) * n.y + cross(c0, c1) * n.z) * side));
+}
 
 Pose rest_pose(const Model& model) {
   Pose pose;
@@ -323,6 +330,20 @@ std::vector<CornerId> first_corners(const TriMesh& mesh) {
   for (std::size_t c = 3 * mesh.face_count(); c-- > 0;)
     corners[mesh.vertex(CornerId{c}).index()] = CornerId{c};
   return corners;
+}
+
+std::vector<Mat4> vertex_transforms(const Model& model, const Pose& pose, const Instance& instance) {
+  const Deformation deformation(model, pose, instance);
+  if (deformation.is_rigid()) return {};
+  const TriMesh& mesh = model.meshes[instance.mesh].surface;
+  const std::vector<CornerId> corners = first_corners(mesh);
+  std::vector<Mat4> transforms;
+  transforms.reserve(corners.size());
+  for (std::size_t v = 0; v < corners.size(); ++v) {
+    transforms.push_back(deformation.matrix(corners[v]) *
+                         compose(Vec3d(deformation.offset(VertexId{v})), {}, {1, 1, 1}));
+  }
+  return transforms;
 }
 
 std::vector<Vec3f> posed_points(const Model& model, const Pose& pose, const Instance& instance,

@@ -60,6 +60,14 @@ struct PosedSurface {
 /// Applies morph targets, then joints or the instance's transform. O(#V · (#targets + #joints per vertex)).
 PosedSurface posed_surface(const Model& model, const Pose& pose, const Instance& instance);
 
+/// Where an instance puts each vertex of its mesh in world space, as a transform of the vertex alone: the
+/// joints at `first_corners`, with what morph targets add as a translation before. [#V]; empty if all have
+/// the instance's own.
+std::vector<Mat4> vertex_transforms(const Model& model, const Pose& pose, const Instance& instance);
+
+/// Takes a normal along, by the cofactor matrix, turned so that it keeps its side when `a` mirrors. Unit.
+Vec3f transform_normal(const Mat4& a, Vec3f normal);
+
 /// The first corner at each vertex, whose joints place it; none where there are no triangles. [#V]. O(#F).
 std::vector<CornerId> first_corners(const TriMesh& mesh);
 

@@ -1,0 +1,47 @@
+#include "fovea/render/fragment_lists.h"
+
+namespace fovea {
+
+/// Gives the list room for another number of fragments; as many as fit are kept.
+void FragmentLists::resize(List& list, std::uint32_t size) {
+  const std::uint32_t kept = std::min(list.size, size);
+  const bool fits = list.size > 0 && size > 0 && room_class(list.size) == room_class(size);
+  if (!fits) {
+    std::uint32_t begin = 0;
+    if (size > 0) {
+      std::vector<std::uint32_t>& rooms = free_[room_class(size)];
+      if (rooms.empty()) {
+        begin = static_cast<std::uint32_t>(pool_.size());
+        pool_.resize(pool_.size() + std::bit_ceil(size));
+      } else {
+        begin = rooms.back();
+        rooms.pop_back();
+      }
+      std::copy_n(pool_.begin() + list.begin, kept, pool_.begin() + begin);
+    }
+    if (list.size > 0) free_[room_class(list.size)].push_back(list.begin);
+    list.begin = begin;
+  }
+  list.size = size;
+}
+
+void FragmentLists::add(List& list, const Fragment& fragment) {
+  std::uint32_t at = list.size;
+  resize(list, list.size + 1);
+  Fragment* const fragments = pool_.data() + list.begin;
+  for (; at > 0 && fragment.is_before(fragments[at - 1]); --at) fragments[at] = fragments[at - 1];
+  fragments[at] = fragment;
+  ++size_;
+}
+
+void FragmentLists::drop(List& list, std::uint32_t triangle) {
+  Fragment* const fragments = pool_.data() + list.begin;
+  std::uint32_t at = 0;
+  while (at < list.size && fragments[at].triangle != triangle) ++at;
+  if (at == list.size) return;  // a hole
+  std::copy(fragments + at + 1, fragments + list.size, fragments + at);
+  resize(list, list.size - 1);
+  --size_;
+}
+
+}  // namespace fovea

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "fovea/base/math.h"
+
+namespace fovea {
+
+/// What Fovea's rig (light_rig.h) sends to a far eye from every normal of a material: tabulated, for whoever
+/// asks very often. 32 kB.
+class LightTable {
+ public:
+  LightTable(float metallic, float roughness, Vec3f to_eye);
+
+  /// Light is base colour × `tinted` + `white`.
+  struct Light {
+    float tinted = 0, white = 0;
+  };
+  /// `normal` of any length but 0. Mixed of four entries, within about 0.02 of the rig where it is rough.
+  Light at(Vec3f normal) const {
+    const float inverse = 1 / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+    float x = normal.x * inverse, y = normal.y * inverse;
+    if (normal.z < 0) {  // the lower half of the octahedron is folded outwards
+      const float fx = (1 - std::abs(y)) * (x < 0 ? -1.0f : 1.0f);
+      y = (1 - std::abs(x)) * (y < 0 ? -1.0f : 1.0f);
+      x = fx;
+    }
+    constexpr float kHalf = 0.5f * (kSide - 1);
+    const float u = (x + 1) * kHalf, v = (y + 1) * kHalf;
+    const int i = u < kSide - 2 ? static_cast<int>(u) : kSide - 2, j = v < kSide - 2 ? static_cast<int>(v) : kSide - 2;
+    const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
+    const Light* const p = lights_.data() + static_cast<std::size_t>(j) * kSide + static_cast<std::size_t>(i);
+    const float a = (1 - s) * (1 - t), b = s * (1 - t), c = (1 - s) * t, d = s * t;
+    return {p[0].tinted * a + p[1].tinted * b + p[kSide].tinted * c + p[kSide + 1].tinted * d,
+            p[0].white * a + p[1].white * b + p[kSide].white * c + p[kSide + 1].white * d};
+  }
+
+ private:
+  static constexpr int kSide = 64;
+  std::vector<Light> lights_;  // [kSide²] over the octahedron, unfolded
+};
+
+}  // namespace fovea

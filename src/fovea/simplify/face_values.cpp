@@ -1,0 +1,234 @@
+#include "fovea/simplify/face_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/srgb.h"
+
+namespace fovea {
+
+namespace {
+
+/// Grey without coverage: what pixels without a surface have.
+constexpr PackedColor kBackgroundColor = 0x00808080;
+/// Of blended surfaces what lets more light through than this counts as a hole.
+constexpr float kBlendCutoff = 0.5f;
+
+int find_channel(const CollapseState& state, Semantic semantic, int set) {
+  for (std::size_t i = 0; i < state.channels.size(); ++i) {
+    const Channel& channel = state.channels[i];
+    if (!channel.is_position_morph && channel.semantic == semantic && channel.set == set)
+      return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::uint32_t byte(PackedColor color, int channel) { return color >> (8 * channel) & 255; }
+
+/// Display values under light; alpha stays.
+PackedColor lit(PackedColor color, LightTable::Light light) {
+  struct Curves {
+    std::array<float, 256> light;
+    std::array<std::uint8_t, 4096> display;
+    Curves() {
+      for (std::size_t i = 0; i < light.size(); ++i) light[i] = to_light(static_cast<std::uint8_t>(i));
+      for (std::size_t i = 0; i < display.size(); ++i)
+        display[i] = to_display(static_cast<float>(i) / static_cast<float>(display.size() - 1));
+    }
+  };
+  static const Curves kCurves;
+  const auto shade = [&](int channel) {
+    const float x = kCurves.light[byte(color, channel)] * light.tinted + light.white;
+    const auto i = static_cast<std::size_t>(std::clamp(x, 0.0f, 1.0f) * 4095.0f + 0.5f);
+    return PackedColor{kCurves.display[i]} << (8 * channel);
+  };
+  return shade(0) | shade(1) | shade(2) | (color & 0xFF000000);
+}
+
+/// Each channel times a number; alpha stays.
+PackedColor scaled(PackedColor color, float r, float g, float b) {
+  const auto times = [&](int channel, float factor) {
+    const float x = static_cast<float>(byte(color, channel)) * factor + 0.5f;
+    return static_cast<PackedColor>(std::clamp(x, 0.0f, 255.0f)) << (8 * channel);
+  };
+  return times(0, r) | times(1, g) | times(2, b) | (color & 0xFF000000);
+}
+
+}  // namespace
+
+FaceValues::FaceValues(const CollapseState& state, const ShownSurface& shown, const RenderScene& scene,
+                       PixelContent content, int view_size)
+    : state_(state),
+      shown_(shown),
+      content_(content),
+      view_size_(view_size),
+      normal_channel_(find_channel(state, Semantic::normal, 0)),
+      color_channel_(find_channel(state, Semantic::color, 0)) {
+  for (const SceneMaterial& material : scene.materials) {
+    MaterialLook& look = materials_.emplace_back();
+    look.color = packed(material.base_color);
+    look.unlit = material.unlit;
+    if (material.alpha_mode == AlphaMode::opaque) look.color |= 0xFF000000;
+    const float cutoff = material.alpha_mode == AlphaMode::mask    ? material.alpha_cutoff
+                         : material.alpha_mode == AlphaMode::blend ? kBlendCutoff
+                                                                   : 0;
+    look.cutoff = static_cast<std::uint32_t>(std::clamp(cutoff, 0.0f, 1.0f) * 255);
+    if (!material.base_color_texture) continue;
+    const SceneTexture& texture = *material.base_color_texture;
+    look.channel = find_channel(state, Semantic::uv, texture.uv_set);
+    if (look.channel < 0) continue;
+    look.texture = add_texture(scene, texture, material.base_color);
+    look.u = {texture.xx, texture.yx};
+    look.v = {texture.xy, texture.yy};
+    look.offset = {texture.x, texture.y};
+  }
+  if (content == PixelContent::lit) make_lights(scene);
+}
+
+/// Materials shine by their mean: maps of metalness and roughness count as their average.
+void FaceValues::make_lights(const RenderScene& scene) {
+  constexpr float kSteps = 8;
+  for (std::size_t m = 0; m < materials_.size(); ++m) {
+    const SceneMaterial& material = scene.materials[m];
+    float metallic = material.metallic, roughness = material.roughness;
+    if (material.metallic_roughness_texture) {
+      const MipMap& map = *scene.images[static_cast<std::size_t>(material.metallic_roughness_texture->image)].map;
+      if (map.level_count() > 0) {
+        const Rgba mean = map.texel(map.level_count() - 1, 0, 0);
+        metallic *= mean.b;
+        roughness *= mean.g;
+      }
+    }
+    const auto step = [](float x) { return static_cast<int>(std::clamp(x, 0.0f, 1.0f) * kSteps + 0.5f); };
+    const Finish finish{step(metallic), step(roughness)};
+    auto known = std::find(finishes_.begin(), finishes_.end(), finish);
+    if (known == finishes_.end()) known = finishes_.insert(known, finish);
+    materials_[m].finish = static_cast<std::size_t>(known - finishes_.begin());
+  }
+  for (std::size_t view = 0; view < shown_.view_count(); ++view) {
+    for (const Finish& finish : finishes_) {
+      lights_.emplace_back(static_cast<float>(finish.metallic) / kSteps,
+                           static_cast<float>(finish.roughness) / kSteps, Vec3f(shown_.view(view).back));
+    }
+  }
+}
+
+/// The texture seen through a factor; materials share it.
+int FaceValues::add_texture(const RenderScene& scene, const SceneTexture& texture, Rgba factor) {
+  const MipMap& map = *scene.images[static_cast<std::size_t>(texture.image)].map;
+  if (map.level_count() == 0) return -1;
+  const TextureKey key{texture.image, factor, texture.sampler.wrap_u, texture.sampler.wrap_v};
+  const auto known = std::find(keys_.begin(), keys_.end(), key);
+  if (known != keys_.end()) return static_cast<int>(known - keys_.begin());
+  keys_.push_back(key);
+  // A chart rarely fills a view with less than a quarter of its image's side.
+  textures_.emplace_back(map, factor, texture.sampler, 4 * view_size_);
+  return static_cast<int>(textures_.size()) - 1;
+}
+
+std::uint32_t FaceValues::background() const {
+  return content_ == PixelContent::color || content_ == PixelContent::lit ? kBackgroundColor : 0;
+}
+
+std::size_t FaceValues::value_count() const { return shown_.face_count() + std::size_t{1}; }
+
+FaceLook FaceValues::look(const Showing& showing, std::uint32_t f, const PlannedCollapse* planned) const {
+  FaceLook look;
+  look.material = shown_.material(f);
+  look.number = shown_.shown_face(showing, f) + 1;
+  if (content_ == PixelContent::face) return look;
+  const MaterialLook& material = materials_[look.material];
+  look.color = material.color;
+  std::array<const float*, 3> values;
+  if (material.texture >= 0 && corner_values(material.channel, f, planned, values)) {
+    look.texture = &textures_[static_cast<std::size_t>(material.texture)];
+    for (std::size_t k = 0; k < 3; ++k)
+      look.uv[k] = material.u * values[k][0] + material.v * values[k][1] + material.offset;
+    const Vec2f a = look.uv[1] - look.uv[0], b = look.uv[2] - look.uv[0];
+    look.texel_area = std::abs(cross(a, b)) * look.texture->full_width() * look.texture->full_height();
+  }
+  if (corner_values(color_channel_, f, planned, values)) {
+    look.is_tinted = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      look.tint[k] = {linear_to_srgb(values[k][0]), linear_to_srgb(values[k][1]),
+                      linear_to_srgb(values[k][2])};
+    }
+  }
+  if (content_ == PixelContent::lit && !material.unlit) set_normals(look, showing, f, planned);
+  return look;
+}
+
+/// What a channel has at the corners of a face; false if it has nothing there.
+bool FaceValues::corner_values(int channel, std::uint32_t f, const PlannedCollapse* planned,
+                               std::array<const float*, 3>& values) const {
+  if (channel < 0) return false;
+  const auto i = static_cast<std::size_t>(channel);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t corner = 3 * f + k, value = state_.channels[i].corner_value[corner];
+    if (value == kInvalid) return false;
+    const std::uint32_t v = state_.mesh.vertex(corner);
+    const bool merges = planned != nullptr && (v == planned->a || v == planned->b);
+    values[k] = merges ? planned->merge->planned(i, value) : state_.channels[i].value(value);
+  }
+  return true;
+}
+
+/// Normals of the corners in the world; those of the face where it has none of its own.
+void FaceValues::set_normals(FaceLook& look, const Showing& showing, std::uint32_t f,
+                             const PlannedCollapse* planned) const {
+  look.is_lit = true;
+  std::array<const Mat4*, 3> world;
+  std::array<Vec3d, 3> p;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t v = state_.mesh.vertex(3 * f + k);
+    const bool merges = planned != nullptr && (v == planned->a || v == planned->b);
+    world[k] = merges ? &planned->world : &shown_.to_world(showing, v);
+    p[k] = merges ? planned->position : state_.mesh.position(v);
+  }
+  std::array<const float*, 3> values;
+  if (corner_values(normal_channel_, f, planned, values)) {
+    for (std::size_t k = 0; k < 3; ++k)
+      look.normal[k] = transform_normal(*world[k], {values[k][0], values[k][1], values[k][2]});
+    return;
+  }
+  const Vec3f flat = transform_normal(*world[0], Vec3f(normalized(cross(p[1] - p[0], p[2] - p[0]))));
+  look.normal = {flat, flat, flat};
+}
+
+FaceValues::Shading::Shading(const FaceValues& values, const FaceLook& look,
+                             const std::array<ScreenVertex, 3>& v, std::size_t view, bool mirrored)
+    : values_(values), look_(look), weights_(v, values.shown_.view(view).perspective) {
+  if (look.is_lit) {
+    light_ = &values.lights_[view * values.finishes_.size() + values.materials_[look.material].finish];
+  }
+  const std::int64_t area = double_area(v);
+  side_ = (area > 0) == mirrored ? 1.0f : -1.0f;
+  if (look.texture == nullptr) return;
+  const auto pixels = static_cast<float>(std::abs(area)) / (kSubsamples * kSubsamples);
+  level_ = look.texture->level_for(look.texel_area / pixels);
+}
+
+bool FaceValues::Shading::at(int x, int y, std::uint32_t& value) const {
+  if (values_.content_ == PixelContent::face) {
+    value = look_.number;
+    return true;
+  }
+  const std::array<float, 3> w = weights_.at(x, y);
+  const MaterialLook& material = values_.materials_[look_.material];
+  PackedColor color = look_.color;
+  if (look_.texture != nullptr)
+    color = look_.texture->at(level_, look_.uv[0] * w[0] + look_.uv[1] * w[1] + look_.uv[2] * w[2]);
+  if (byte(color, 3) < material.cutoff) return false;
+  if (look_.is_tinted) {
+    const Rgba tint = look_.tint[0] * w[0] + look_.tint[1] * w[1] + look_.tint[2] * w[2];
+    color = scaled(color, tint.r, tint.g, tint.b);
+  }
+  if (look_.is_lit) {
+    const Vec3f sum = look_.normal[0] * w[0] + look_.normal[1] * w[1] + look_.normal[2] * w[2];
+    if (sum.x != 0 || sum.y != 0 || sum.z != 0) color = lit(color, light_->at(sum * side_));
+  }
+  value = color | 0xFF000000;
+  return true;
+}
+
+}  // namespace fovea

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fovea/render/corner_weights.h"
+#include "fovea/render/display_texture.h"
+#include "fovea/render/light_table.h"
+#include "fovea/render/scene.h"
+#include "fovea/simplify/shown_surface.h"
+#include "fovea/simplify/value_merge.h"
+
+namespace fovea {
+
+/// What a view notes of a surface in a pixel.
+enum class PixelContent {
+  color,   ///< Base colour, as packed display values.
+  lit,     ///< Base colour under Fovea's rig, diffuse: shape shows in it.
+  region,  ///< The number of the texture's region, 1 and up.
+  face,    ///< The number of the face, 1 and up.
+};
+
+/// A face as it looks: what its corners have for the content.
+struct FaceLook {
+  const DisplayTexture* texture = nullptr;  ///< None: `color` or `number` all over.
+  std::array<Vec2f, 3> uv;                  ///< Where a texture is looked up, transformed.
+  float texel_area = 0;                     ///< Twice the face's area in texels of the whole image.
+  PackedColor color = 0;                    ///< Of the material's factor.
+  bool is_tinted = false, is_lit = false;
+  std::array<Rgba, 3> tint;     ///< Vertex colours, as display values 0 … 1.
+  std::array<Vec3f, 3> normal;  ///< In the world.
+  std::uint32_t number = 0;     ///< Of the face.
+  std::uint32_t material = 0;
+};
+
+/// A collapse as the faces around it see it.
+struct PlannedCollapse {
+  std::uint32_t a = kInvalid, b = kInvalid;
+  Vec3d position;                     ///< Of the merged vertex.
+  const ValueMerge* merge = nullptr;  ///< Has planned it.
+  Mat4 world;                         ///< Mesh to world at the merged vertex.
+};
+
+/// Says what faces of the collapse engine show in pixels, as they are or as a planned collapse would leave
+/// them. Refers to all that it was made of.
+class FaceValues {
+ public:
+  FaceValues(const CollapseState& state, const ShownSurface& shown, const RenderScene& scene,
+             PixelContent content, int view_size);
+
+  /// What a pixel without any surface has.
+  std::uint32_t background() const;
+  /// Of regions and faces: one more than the largest number.
+  std::size_t value_count() const;
+  /// Whether face f may have holes, by the alpha of its material.
+  bool has_holes(std::uint32_t f) const { return materials_[shown_.material(f)].cutoff > 0; }
+
+  /// Face f as it is, or as a planned collapse leaves it.
+  FaceLook look(const Showing& showing, std::uint32_t f, const PlannedCollapse* planned = nullptr) const;
+
+  /// A face in a view, ready to be looked at pixel by pixel.
+  class Shading {
+   public:
+    Shading(const FaceValues& values, const FaceLook& look, const std::array<ScreenVertex, 3>& v,
+            std::size_t view, bool mirrored);
+    /// What pixel (x, y) shows; false if there is a hole.
+    bool at(int x, int y, std::uint32_t& value) const;
+
+   private:
+    const FaceValues& values_;
+    const FaceLook& look_;
+    CornerWeights weights_;
+    std::size_t level_ = 0;
+    const LightTable* light_ = nullptr;
+    float side_ = 1;  // −1 if the back is seen
+  };
+
+ private:
+  struct MaterialLook {
+    int texture = -1;  // into textures_
+    int channel = -1;  // of the state: the texture coordinates
+    Vec2f u, v, offset;  // uv' = u · uv.x + v · uv.y + offset
+    PackedColor color = 0;
+    std::uint32_t cutoff = 0;  // alpha below which there is a hole, 0 … 255
+    bool unlit = false;
+    std::size_t finish = 0;  // which of the light tables of a view
+  };
+  /// Metallic and roughness, rounded so that materials share tables.
+  struct Finish {
+    int metallic, roughness;
+    friend bool operator==(const Finish&, const Finish&) = default;
+  };
+  bool corner_values(int channel, std::uint32_t f, const PlannedCollapse* planned,
+                     std::array<const float*, 3>& values) const;
+  void set_normals(FaceLook& look, const Showing& showing, std::uint32_t f,
+                   const PlannedCollapse* planned) const;
+  void make_lights(const RenderScene& scene);
+  int add_texture(const RenderScene& scene, const SceneTexture& texture, Rgba factor);
+
+  const CollapseState& state_;
+  const ShownSurface& shown_;
+  const PixelContent content_;
+  const int view_size_;
+  std::vector<MaterialLook> materials_;
+  std::vector<Finish> finishes_;
+  std::vector<LightTable> lights_;  // [#views][#finishes], with content `lit`
+  std::vector<DisplayTexture> textures_;
+  struct TextureKey {
+    int image;
+    Rgba factor;
+    Wrap wrap_u, wrap_v;
+    friend bool operator==(const TextureKey&, const TextureKey&) = default;
+  };
+  std::vector<TextureKey> keys_;  // [#textures]
+  int normal_channel_ = -1, color_channel_ = -1;
+};
+
+}  // namespace fovea

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/model/model.h"
+#include "fovea/simplify/edge_cost.h"
+#include "fovea/simplify/face_values.h"
+#include "fovea/simplify/shown_surface.h"
+#include "fovea/simplify/simplify.h"
+#include "fovea/simplify/view_cost.h"
+
+namespace fovea {
+
+/// What collapses cost by what views see, for the collapse engine.
+///
+/// A price is what the views lose (view_cost.h) by vertex importance, with a little of the quadric error, which
+/// decides where views see nothing and keeps the order sane where pixels are chance. Prices that changes
+/// around an edge have outdated are known; so an edge is priced again only when it comes up.
+class ViewMetric {
+ public:
+  /// Renders the meshes of `state`, whose numbers in the model are `mesh_index`; `importance` are the fields
+  /// that `state` was made with.
+  ViewMetric(const CollapseState& state, const Model& model, std::span<const std::size_t> mesh_index,
+             std::span<const VertexField* const> importance, const SimplifyOptions& options,
+             Context& context);
+
+  /// What a thread needs to price.
+  struct Memory {
+    ValueMerge merge;
+    std::shared_ptr<ViewCost::Scratch> scratch;
+  };
+  Memory make_memory(CollapseState& state) const;
+
+  /// The price of collapsing the edge to a place; its cost is the quadric error. `merge` has planned it.
+  double price(std::uint32_t e, const Candidate& place, const ValueMerge& merge,
+               ViewCost::Scratch& scratch) const;
+
+  /// Notes the best place of an edge as of now, at its price.
+  void note(std::uint32_t e, const Candidate& place);
+  /// Whether nothing has changed around the edge since its price was noted.
+  bool is_fresh(std::uint32_t e) const;
+  const Candidate& noted(std::uint32_t e) const { return place_[e]; }
+
+  /// To be called around a collapse, see ViewCost.
+  void before_collapse(std::uint32_t a, std::uint32_t b, Vec3d p);
+  void after_collapse(std::uint32_t a, std::uint32_t b);
+  void lose(std::span<const std::uint32_t> faces) { cost_->take_out(faces); }
+
+ private:
+  const CollapseState& state_;
+  const Placement placement_;
+  RenderScene scene_;
+  std::unique_ptr<ShownSurface> shown_;
+  std::unique_ptr<FaceValues> values_;
+  std::unique_ptr<ViewCost> cost_;
+  double scale_ = 1;
+  std::vector<float> importance_;       // [#V], empty if all are 1
+  std::vector<Candidate> place_;        // [#E], as noted
+  std::vector<std::uint32_t> noted_;    // [#E], collapses so far, then
+  std::vector<std::uint32_t> changed_;  // [#V], collapses so far at the last change around it
+  std::uint32_t collapses_ = 0;
+  std::vector<std::uint32_t> faces_;  // scratch of the collapse
+};
+
+}  // namespace fovea
