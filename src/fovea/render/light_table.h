@@ -1,10 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <vector>
 
 #include "fovea/base/math.h"
+#include "fovea/render/float4.h"
 
 namespace fovea {
 
@@ -31,10 +33,13 @@ class LightTable {
     const float u = (x + 1) * kHalf, v = (y + 1) * kHalf;
     const int i = u < kSide - 2 ? static_cast<int>(u) : kSide - 2, j = v < kSide - 2 ? static_cast<int>(v) : kSide - 2;
     const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
+    // Neighbours in a row lie together.
+    Float4 above, below;
     const Light* const p = lights_.data() + static_cast<std::size_t>(j) * kSide + static_cast<std::size_t>(i);
-    const float a = (1 - s) * (1 - t), b = s * (1 - t), c = (1 - s) * t, d = s * t;
-    return {p[0].tinted * a + p[1].tinted * b + p[kSide].tinted * c + p[kSide + 1].tinted * d,
-            p[0].white * a + p[1].white * b + p[kSide].white * c + p[kSide + 1].white * d};
+    std::memcpy(&above, p, sizeof(above));
+    std::memcpy(&below, p + kSide, sizeof(below));
+    const Float4 row = above + (below - above) * t;
+    return {row[0] + (row[2] - row[0]) * s, row[1] + (row[3] - row[1]) * s};
   }
 
  private:

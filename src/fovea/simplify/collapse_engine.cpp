@@ -30,6 +30,8 @@ constexpr double kRetryFactor = 2;
 constexpr std::uint8_t kMaxRetries = 12;
 /// A legal position may cost this much more than the edge was queued for; else the edge goes back.
 constexpr double kTolerance = 1.1;
+/// Edges that are looked at in parallel when views have to price one again.
+constexpr std::size_t kAhead = 8;
 /// Items that are taken from the queue together, so that their memory is fetched together.
 constexpr std::size_t kBatch = 16;
 
@@ -82,7 +84,7 @@ class Engine {
   void price(Due& due);
   Candidate best_view_place(std::uint32_t e, const Quadric& q, ViewMetric::Memory& memory) const;
   void price_by_views(std::span<const std::uint32_t> edges);
-  void price_around(std::uint32_t b);
+  void take_by_views();
   void try_edge(Due& due);
   bool is_dearer(const Due& due, double price);
   bool is_legal(std::uint32_t e, Vec3d p);
@@ -223,8 +225,11 @@ StopReason Engine::loop() {
 /// Takes the next items out of the queue: those that cost about as much as the first.
 void Engine::take_batch() {
   batch_.clear();
-  const std::size_t most = views_ != nullptr ? 1 : kBatch;
-  while (batch_.size() < most) {
+  if (views_ != nullptr) {
+    take_by_views();
+    return;
+  }
+  while (batch_.size() < kBatch) {
     const std::uint32_t item = queue_.first();
     if (item == kInvalid) break;
     const double cost = queue_.cost_floor(item);
@@ -241,6 +246,34 @@ void Engine::take_batch() {
   }
   for (const Due& due : batch_) {
     if (due.item < edge_count_) cost_.fetch_joined(due.item);
+  }
+}
+
+/// Takes the cheapest item that has the price it was queued for. Prices of edges that something has changed
+/// around are found anew when they come up, of the next few in parallel.
+void Engine::take_by_views() {
+  for (;;) {
+    const std::uint32_t item = queue_.first();
+    if (item == kInvalid) return;
+    if (item >= edge_count_ || views_->is_fresh(item)) {
+      batch_.push_back({item, queue_.cost_floor(item), {}, {}});
+      queue_.remove(item);
+      return;
+    }
+    std::vector<std::uint32_t> stale;
+    std::vector<std::pair<std::uint32_t, double>> others;
+    for (std::size_t i = 0; i < kAhead; ++i) {
+      const std::uint32_t next = queue_.first();
+      if (next == kInvalid) break;
+      if (next >= edge_count_ || views_->is_fresh(next)) {
+        others.emplace_back(next, queue_.cost_floor(next));
+      } else {
+        stale.push_back(next);
+      }
+      queue_.remove(next);
+    }
+    for (const auto& [other, cost] : others) queue_.set(other, cost);
+    price_by_views(stale);
   }
 }
 
@@ -409,12 +442,8 @@ void Engine::commit(std::uint32_t e, const Candidate& where, double error) {
   retire_values(a, b);
   cost_.forget(a);
   look_at_values(b);
-  if (views_ != nullptr) {
-    views_->after_collapse(a, b);
-    price_around(b);
-  } else {
-    revive_edges(b);
-  }
+  if (views_ != nullptr) views_->after_collapse(a, b);
+  revive_edges(b);
   changed_.push_back(b);
 
   CollapseStep step;
@@ -543,6 +572,10 @@ void Engine::revive_edges(std::uint32_t b) {
   const auto revive = [&](std::uint32_t e) {
     if (tries_[e] == 0) return;
     tries_[e] = 0;
+    if (views_ != nullptr) {
+      price_by_views({&e, 1});
+      return;
+    }
     const double cost = cost_.best_place(e, cost_.quadric(e)).cost;
     if (std::isfinite(cost)) queue_.set(e, cost);
   };
@@ -551,20 +584,6 @@ void Engine::revive_edges(std::uint32_t b) {
     revive(at_c.to_next);
     revive(at_c.to_previous);
   });
-}
-
-/// The views have changed around b: the edges at b get new prices now, those next to it when they come up.
-void Engine::price_around(std::uint32_t b) {
-  mesh_.vertices[b].refused = 0;
-  ring_.clear();
-  mesh_.for_ring(b, [&](std::uint32_t c) {
-    const CornerView at_c = mesh_.view(c);
-    for (const std::uint32_t e : {at_c.to_next, at_c.to_previous}) {
-      if (std::find(ring_.begin(), ring_.end(), e) == ring_.end()) ring_.push_back(e);
-      tries_[e] = 0;
-    }
-  });
-  price_by_views(ring_);
 }
 
 void Engine::finish_step(CollapseStep step, double error) {

@@ -25,33 +25,15 @@ int find_channel(const CollapseState& state, Semantic semantic, int set) {
 
 std::uint32_t byte(PackedColor color, int channel) { return color >> (8 * channel) & 255; }
 
-/// Display values under light; alpha stays.
-PackedColor lit(PackedColor color, LightTable::Light light) {
-  struct Curves {
-    std::array<float, 256> light;
-    std::array<std::uint8_t, 4096> display;
-    Curves() {
-      for (std::size_t i = 0; i < light.size(); ++i) light[i] = to_light(static_cast<std::uint8_t>(i));
-      for (std::size_t i = 0; i < display.size(); ++i)
-        display[i] = to_display(static_cast<float>(i) / static_cast<float>(display.size() - 1));
-    }
-  };
-  static const Curves kCurves;
-  const auto shade = [&](int channel) {
-    const float x = kCurves.light[byte(color, channel)] * light.tinted + light.white;
-    const auto i = static_cast<std::size_t>(std::clamp(x, 0.0f, 1.0f) * 4095.0f + 0.5f);
-    return PackedColor{kCurves.display[i]} << (8 * channel);
-  };
-  return shade(0) | shade(1) | shade(2) | (color & 0xFF000000);
-}
+/// From amounts of light to display values and back, nearly: light is the square.
+Float4 root(Float4 x) { return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), 0}; }
 
-/// Each channel times a number; alpha stays.
-PackedColor scaled(PackedColor color, float r, float g, float b) {
-  const auto times = [&](int channel, float factor) {
-    const float x = static_cast<float>(byte(color, channel)) * factor + 0.5f;
-    return static_cast<PackedColor>(std::clamp(x, 0.0f, 255.0f)) << (8 * channel);
+PackedColor rounded(Float4 display) {
+  const auto whole = [&](int k) {
+    const float x = display[k] + 0.5f;
+    return static_cast<PackedColor>(x < 255 ? (x > 0 ? x : 0) : 255);
   };
-  return times(0, r) | times(1, g) | times(2, b) | (color & 0xFF000000);
+  return whole(0) | whole(1) << 8 | whole(2) << 16;
 }
 
 }  // namespace
@@ -142,16 +124,18 @@ FaceLook FaceValues::look(const Showing& showing, std::uint32_t f, const Planned
   std::array<const float*, 3> values;
   if (material.texture >= 0 && corner_values(material.channel, f, planned, values)) {
     look.texture = &textures_[static_cast<std::size_t>(material.texture)];
-    for (std::size_t k = 0; k < 3; ++k)
-      look.uv[k] = material.u * values[k][0] + material.v * values[k][1] + material.offset;
-    const Vec2f a = look.uv[1] - look.uv[0], b = look.uv[2] - look.uv[0];
-    look.texel_area = std::abs(cross(a, b)) * look.texture->full_width() * look.texture->full_height();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2f uv = material.u * values[k][0] + material.v * values[k][1] + material.offset;
+      look.uv[k] = Float4{uv.x, uv.y, 0, 0};
+    }
+    const Float4 a = look.uv[1] - look.uv[0], b = look.uv[2] - look.uv[0];
+    look.texel_area = std::abs(a[0] * b[1] - a[1] * b[0]) * look.texture->full_width() * look.texture->full_height();
   }
   if (corner_values(color_channel_, f, planned, values)) {
     look.is_tinted = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      look.tint[k] = {linear_to_srgb(values[k][0]), linear_to_srgb(values[k][1]),
-                      linear_to_srgb(values[k][2])};
+      look.tint[k] = Float4{linear_to_srgb(values[k][0]), linear_to_srgb(values[k][1]),
+                            linear_to_srgb(values[k][2]), 0};
     }
   }
   if (content_ == PixelContent::lit && !material.unlit) set_normals(look, showing, f, planned);
@@ -197,13 +181,23 @@ void FaceValues::set_normals(FaceLook& look, const Showing& showing, std::uint32
 
 FaceValues::Shading::Shading(const FaceValues& values, const FaceLook& look,
                              const std::array<ScreenVertex, 3>& v, std::size_t view, bool mirrored)
-    : values_(values), look_(look), weights_(v, values.shown_.view(view).perspective) {
-  if (look.is_lit) {
-    light_ = &values.lights_[view * values.finishes_.size() + values.materials_[look.material].finish];
-  }
+    : values_(values), look_(look) {
+  if (values.content_ == PixelContent::face) return;
+  const CornerPlanes planes(v, values.shown_.view(view).perspective);
   const std::int64_t area = double_area(v);
-  side_ = (area > 0) == mirrored ? 1.0f : -1.0f;
+  const MaterialLook& material = values.materials_[look.material];
+  cutoff_ = material.cutoff;
+  const float side = (area > 0) == mirrored ? 1.0f : -1.0f;  // back: −1
+  std::array<Float4, 3> normal{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3f n = look.is_lit ? look.normal[k] * side : Vec3f{};
+    normal[k] = Float4{n.x, n.y, n.z, 1};
+  }
+  normal_ = planes.plane(normal);
+  if (look.is_tinted) tint_ = planes.plane(look.tint);
+  if (look.is_lit) light_ = &values.lights_[view * values.finishes_.size() + material.finish];
   if (look.texture == nullptr) return;
+  uv_ = planes.plane(look.uv);
   const auto pixels = static_cast<float>(std::abs(area)) / (kSubsamples * kSubsamples);
   level_ = look.texture->level_for(look.texel_area / pixels);
 }
@@ -213,19 +207,23 @@ bool FaceValues::Shading::at(int x, int y, std::uint32_t& value) const {
     value = look_.number;
     return true;
   }
-  const std::array<float, 3> w = weights_.at(x, y);
-  const MaterialLook& material = values_.materials_[look_.material];
+  const Float4 normal = normal_(x, y);
+  const float inverse = 1 / normal[3];
   PackedColor color = look_.color;
-  if (look_.texture != nullptr)
-    color = look_.texture->at(level_, look_.uv[0] * w[0] + look_.uv[1] * w[1] + look_.uv[2] * w[2]);
-  if (byte(color, 3) < material.cutoff) return false;
-  if (look_.is_tinted) {
-    const Rgba tint = look_.tint[0] * w[0] + look_.tint[1] * w[1] + look_.tint[2] * w[2];
-    color = scaled(color, tint.r, tint.g, tint.b);
+  if (look_.texture != nullptr) {
+    const Float4 uv = uv_(x, y) * inverse;
+    color = look_.texture->at(level_, {uv[0], uv[1]});
   }
-  if (look_.is_lit) {
-    const Vec3f sum = look_.normal[0] * w[0] + look_.normal[1] * w[1] + look_.normal[2] * w[2];
-    if (sum.x != 0 || sum.y != 0 || sum.z != 0) color = lit(color, light_->at(sum * side_));
+  if (byte(color, 3) < cutoff_) return false;
+  if (look_.is_tinted || light_ != nullptr) {
+    Float4 shade = {static_cast<float>(byte(color, 0)), static_cast<float>(byte(color, 1)),
+                    static_cast<float>(byte(color, 2)), 0};
+    if (look_.is_tinted) shade *= tint_(x, y) * inverse;
+    if (light_ != nullptr && (normal[0] != 0 || normal[1] != 0 || normal[2] != 0)) {
+      const LightTable::Light light = light_->at({normal[0], normal[1], normal[2]});
+      shade = root(shade * shade * light.tinted + light.white * (255.0f * 255.0f));
+    }
+    color = rounded(shade);
   }
   value = color | 0xFF000000;
   return true;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/render/corner_weights.h"
+#include "fovea/render/corner_planes.h"
 #include "fovea/render/display_texture.h"
 #include "fovea/render/light_table.h"
 #include "fovea/render/scene.h"
@@ -25,11 +25,11 @@ enum class PixelContent {
 /// A face as it looks: what its corners have for the content.
 struct FaceLook {
   const DisplayTexture* texture = nullptr;  ///< None: `color` or `number` all over.
-  std::array<Vec2f, 3> uv;                  ///< Where a texture is looked up, transformed.
+  std::array<Float4, 3> uv;                 ///< Where a texture is looked up, transformed: the first two.
   float texel_area = 0;                     ///< Twice the face's area in texels of the whole image.
   PackedColor color = 0;                    ///< Of the material's factor.
   bool is_tinted = false, is_lit = false;
-  std::array<Rgba, 3> tint;     ///< Vertex colours, as display values 0 … 1.
+  std::array<Float4, 3> tint;   ///< Vertex colours, as display values 0 … 1: the first three.
   std::array<Vec3f, 3> normal;  ///< In the world.
   std::uint32_t number = 0;     ///< Of the face.
   std::uint32_t material = 0;
@@ -71,10 +71,11 @@ class FaceValues {
    private:
     const FaceValues& values_;
     const FaceLook& look_;
-    CornerWeights weights_;
+    CornerPlanes::Plane normal_;  // turned to the side that is seen; the last is 1
+    CornerPlanes::Plane uv_, tint_;
     std::size_t level_ = 0;
     const LightTable* light_ = nullptr;
-    float side_ = 1;  // −1 if the back is seen
+    std::uint32_t cutoff_ = 0;
   };
 
  private:

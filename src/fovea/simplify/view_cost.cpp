@@ -50,7 +50,8 @@ class ViewCost::Scratch {
   Scratch(int width, int height, std::size_t faces)
       : width_(width),
         pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
-        changes_(faces, 0) {}
+        changes_(faces, 0),
+        touched_(pixels_.size()) {}
 
   /// A face as the present view would see it.
   struct Seen {
@@ -59,8 +60,8 @@ class ViewCost::Scratch {
   };
   struct Pixel {
     std::uint32_t view = 0;          // in which it was touched last
-    std::uint32_t local = kInvalid;  // the nearest face after the collapse
-    Fragment front;                  // of that
+    std::uint32_t local = kInvalid;  // the nearest face after the collapse ...
+    float nearness = 0;              // ... and how near it is
   };
 
   void begin_collapse() {
@@ -78,7 +79,7 @@ class ViewCost::Scratch {
 
   void begin_view() {
     ++view_;
-    touched_.clear();
+    count_ = 0;
     seen_.resize(faces_.size());
   }
   void see(std::uint32_t i, const std::array<ScreenVertex, 3>& corners) {
@@ -89,8 +90,8 @@ class ViewCost::Scratch {
     Pixel& p = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                        static_cast<std::size_t>(x)];
     if (p.view != view_) {
-      p = {view_, kInvalid, {}};
-      touched_.push_back({x, y});
+      p = {view_, kInvalid, 0};
+      touched_[count_++] = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
     }
     return p;
   }
@@ -102,7 +103,8 @@ class ViewCost::Scratch {
   std::vector<LocalFace> faces_;
   std::vector<std::optional<FaceLook>> looks_;  // [#faces_]
   std::vector<Seen> seen_;                      // [#faces_]
-  std::vector<std::array<int, 2>> touched_;
+  std::vector<std::array<std::uint16_t, 2>> touched_;  // [#pixels], of which `count_` count
+  std::size_t count_ = 0;
   std::vector<PlannedCollapse> planned_;  // [#showings of the slot]
   std::vector<ScreenVertex> merged_;      // [#showings of the slot][#views]
   std::vector<std::pair<std::uint32_t, int>> deltas_;
@@ -305,16 +307,18 @@ bool ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
     for_spans(after, lists.rect(), [&](int y, int x0, int x1, const NearnessPlane& plane) {
       plane.for_row(y, x0, x1, [&](int x, float nearness) {
         Scratch::Pixel& pixel = scratch.touch(x, y);
-        const Fragment fragment{nearness, local.shown, 0};
-        if (pixel.local != kInvalid && !fragment.is_before(pixel.front)) return;
+        if (pixel.local != kInvalid &&
+            (nearness < pixel.nearness ||
+             (nearness == pixel.nearness && local.shown > scratch.faces_[pixel.local].shown)))
+          return;
         std::uint32_t value = 0;
         if (local.has_holes && !shading(scratch, i, view).at(x, y, value)) return;
-        pixel.front = fragment;
+        pixel.nearness = nearness;
         pixel.local = i;
       });
     });
   }
-  return !scratch.touched_.empty();
+  return scratch.count_ > 0;
 }
 
 /// What face i would show, made when it is first asked for.
@@ -333,14 +337,16 @@ const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::uint32_t i, 
 template <class Change>
 void ViewCost::for_changes(const ViewState& view, Scratch& scratch, Change&& change) const {
   const auto number = static_cast<std::size_t>(&view - views_.data());
-  for (const auto& [x, y] : scratch.touched_) {
+  for (const auto& [x, y] : std::span(scratch.touched_).first(scratch.count_)) {
     const std::size_t p = view.lists.pixel(x, y);
     const std::span<const Fragment> list = view.lists.at(p);
     const Scratch::Pixel& pixel = scratch.pixels_[p];
     std::size_t stays = 0;
     while (stays < list.size() && scratch.changes(list[stays].triangle)) ++stays;
     const bool is_new =
-        pixel.local != kInvalid && (stays == list.size() || pixel.front.is_before(list[stays]));
+        pixel.local != kInvalid &&
+        (stays == list.size() ||
+         Fragment{pixel.nearness, scratch.faces_[pixel.local].shown, 0}.is_before(list[stays]));
     if (!is_new && stays == 0) continue;
     std::uint32_t after = values_.background();
     if (is_new) {

@@ -1,17 +1,19 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
+#include "fovea/render/float4.h"
 #include "fovea/render/screen_vertex.h"
 
 namespace fovea {
 
-/// How much each corner of a triangle counts at a pixel: perspective-correct weights that add up to 1, as
-/// functions of the pixel. A pure function of the screen vertices.
-class CornerWeights {
+/// Numbers at the corners of a triangle as functions of the pixel: divided by that of 1 they are what lies
+/// between the corners in perspective. Pure functions of the screen vertices.
+class CornerPlanes {
  public:
   /// `v` has an area and one sample per pixel.
-  CornerWeights(const std::array<ScreenVertex, 3>& v, bool perspective) {
+  CornerPlanes(const std::array<ScreenVertex, 3>& v, bool perspective) {
     const double inverse = 1 / static_cast<double>(double_area(v));
     for (std::size_t k = 0; k < 3; ++k) {
       const ScreenVertex &p = v[(k + 1) % 3], &q = v[(k + 2) % 3];
@@ -25,13 +27,21 @@ class CornerWeights {
     }
   }
 
-  std::array<float, 3> at(int x, int y) const {
-    const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
-    std::array<float, 3> w;
-    for (std::size_t k = 0; k < 3; ++k) w[k] = at_0_[k] + dx_[k] * fx + dy_[k] * fy;
-    const float inverse = 1 / (w[0] + w[1] + w[2]);
-    for (float& x_k : w) x_k *= inverse;
-    return w;
+  /// Four numbers at once.
+  struct Plane {
+    Float4 at_0{}, dx{}, dy{};
+    Float4 operator()(int x, int y) const {
+      return at_0 + dx * static_cast<float>(x) + dy * static_cast<float>(y);
+    }
+  };
+  Plane plane(const std::array<Float4, 3>& corners) const {
+    Plane plane;
+    for (std::size_t k = 0; k < 3; ++k) {
+      plane.at_0 += corners[k] * at_0_[k];
+      plane.dx += corners[k] * dx_[k];
+      plane.dy += corners[k] * dy_[k];
+    }
+    return plane;
   }
 
  private:
