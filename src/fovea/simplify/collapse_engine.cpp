@@ -31,7 +31,9 @@ constexpr std::uint8_t kMaxRetries = 12;
 /// A legal position may cost this much more than the edge was queued for; else the edge goes back.
 constexpr double kTolerance = 1.1;
 /// Edges that are looked at in parallel when views have to price one again.
-constexpr std::size_t kAhead = 8;
+constexpr std::size_t kTogether = 4;
+/// So many are searched for them, in the order of the queue.
+constexpr std::size_t kAhead = 64;
 /// Items that are taken from the queue together, so that their memory is fetched together.
 constexpr std::size_t kBatch = 16;
 
@@ -262,7 +264,7 @@ void Engine::take_by_views() {
     }
     std::vector<std::uint32_t> stale;
     std::vector<std::pair<std::uint32_t, double>> others;
-    for (std::size_t i = 0; i < kAhead; ++i) {
+    for (std::size_t i = 0; i < kAhead && stale.size() < kTogether; ++i) {
       const std::uint32_t next = queue_.first();
       if (next == kInvalid) break;
       if (next >= edge_count_ || views_->is_fresh(next)) {
