@@ -9,8 +9,9 @@
 
 namespace fovea {
 
-/// Sorts keys by their bits from `low_bit` on; keys that agree in these keep their order. O(#keys) for each
-/// 11 bits that differ, parallel; as much memory again as the keys.
+/// Sorts keys by their bits from `low_bit` on; keys that agree in these keep their order. About O(#keys) if
+/// these numbers are spread over many powers of two, as weights are, or few; parallel. As much memory again
+/// as the keys.
 void sort_by_high_bits(std::vector<std::uint64_t>& keys, int low_bit, const Context& context);
 
 }  // namespace fovea

@@ -60,6 +60,7 @@ class GrowingRegions {
       : sets_(node_count), size_(node_count, 1), limit_(node_count, k), k_(k) {}
 
   std::uint32_t find(std::uint32_t node) { return sets_.find(node); }
+  void prefetch(std::uint32_t node) const { sets_.prefetch(node); }
   bool may_join(std::uint32_t a, std::uint32_t b, double weight) const {
     return weight < std::min(limit_[a], limit_[b]);
   }
@@ -88,28 +89,40 @@ class GrowingRegions {
   double k_;
 };
 
+/// Calls f(key, a, b) for each edge between two components, in the order of the keys, with those that stand
+/// for the components. Mostly waits for memory, so what is needed soon is asked for.
+template <class Edges, class F>
+void for_edges_between(std::span<const std::uint64_t> keys, const Edges& edges, GrowingRegions& regions,
+                       F&& f) {
+  constexpr std::size_t kAhead = 24;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i + kAhead < keys.size()) {
+      for (const std::uint32_t end : edges.ends(keys[i + kAhead])) regions.prefetch(end);
+    }
+    const auto [from, to] = edges.ends(keys[i]);
+    const std::uint32_t a = regions.find(from), b = regions.find(to);
+    if (a != b) f(keys[i], a, b);
+  }
+}
+
 /// Both passes over edges in the order of their keys.
 template <class Edges>
 Segmentation segment(std::size_t node_count, Edges& edges, const SegmentOptions& options) {
   GrowingRegions regions(node_count, options.k);
   std::vector<std::uint64_t>& keys = edges.keys();
-  std::size_t between = 0;  // edges whose ends are in two components, moved to the front
-  for (const std::uint64_t key : keys) {
-    const auto [from, to] = edges.ends(key);
-    const std::uint32_t a = regions.find(from), b = regions.find(to);
-    if (a == b) continue;
+  std::size_t between = 0;  // edges that join nothing, moved to the front
+  for_edges_between(keys, edges, regions, [&](std::uint64_t key, std::uint32_t a, std::uint32_t b) {
     const double weight = edges.weight(key);
     if (regions.may_join(a, b, weight)) {
       regions.join(a, b, weight);
     } else {
       keys[between++] = key;
     }
-  }
-  for (const std::uint64_t key : std::span(keys).first(between)) {
-    const auto [from, to] = edges.ends(key);
-    const std::uint32_t a = regions.find(from), b = regions.find(to);
-    if (a != b && regions.smaller_size(a, b) < options.min_size) regions.join(a, b, 0);
-  }
+  });
+  keys.resize(between);
+  for_edges_between(keys, edges, regions, [&](std::uint64_t, std::uint32_t a, std::uint32_t b) {
+    if (regions.smaller_size(a, b) < options.min_size) regions.join(a, b, 0);
+  });
   return regions.labels();
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kGrain = 16;
 /// Weights are below 2⁹: √3 · 255 at most.
 constexpr int kWholeBits = 9;
-/// Four digits of the sort. More would tell weights apart that differ by rounding only.
+/// More would soon tell weights apart that differ by rounding only.
 constexpr int kMostWeightBits = 44;
 
 FOVEA_WIDE void add_squares(const double* a, const double* b, std::size_t count, double* sum) {
