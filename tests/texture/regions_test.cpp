@@ -174,7 +174,7 @@ TEST(Regions, OneTexelIsOneRegion) {
   for (const float u : {-1.0f, 0.0f, 0.3f, 1.0f}) EXPECT_EQ(found.region_at(0, FaceId{0}, {u, u}), 1u);
 }
 
-TEST(Regions, MaterialsShareThoseOfAnImage) {
+TEST(Regions, MaterialsOfOneColorShareThoseOfAnImage) {
   Model model = squares({0, 1, 2, 3});
   add_textured(model, counted(2, 1));
   Material tinted = model.materials[0];
@@ -185,11 +185,11 @@ TEST(Regions, MaterialsShareThoseOfAnImage) {
   model.textures.push_back(model.textures[0]);  // another texture of the first image
   model.materials[3].base_color->texture = 2;
   const ModelRegions found = regions(model);
-  EXPECT_EQ(found.count(), 1u + 2 + 3);
+  EXPECT_EQ(found.count(), 1u + 2 + 2 + 3);
   const auto at = [&](std::size_t mesh) { return found.region_at(mesh, FaceId{0}, {0.9f, 0.5f}); };
   EXPECT_EQ(at(0), 2u);
-  EXPECT_EQ(at(1), 2u);
-  EXPECT_EQ(at(2), 5u);
+  EXPECT_EQ(at(1), 4u);  // of another colour
+  EXPECT_EQ(at(2), 7u);
   EXPECT_EQ(at(3), 2u);
 }
 
@@ -231,8 +231,8 @@ TEST(Regions, ImagesThatCannotBeDecodedAreAbsent) {
   EXPECT_EQ(test::told(context, "image-not-shown"), 1u);
   EXPECT_EQ(context.diagnostics()[0].place, "/images/0");
   EXPECT_EQ(found.count(), 4u);
-  EXPECT_EQ(found.region_at(1, FaceId{0}, {0.9f, 0}), 2u);
-  EXPECT_EQ(of_faces(found, model, 0), (Numbers{3, 3}));
+  EXPECT_EQ(of_faces(found, model, 0), (Numbers{1, 1}));
+  EXPECT_EQ(found.region_at(1, FaceId{0}, {0.9f, 0}), 3u);
 }
 
 TEST(Regions, TexturesThatDoNotLieOnTheMeshAreAbsent) {

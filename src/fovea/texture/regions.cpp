@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/base/srgb.h"
@@ -16,6 +17,8 @@
 namespace fovea {
 
 namespace {
+
+constexpr std::size_t kNoImage = std::numeric_limits<std::size_t>::max();
 
 const Material& material_of(const Model& model, const Part& part) {
   static const Material kDefault;
@@ -103,12 +106,9 @@ class RegionFinder {
         if (const auto use = texture_use(m, p)) is_shown[use->image] = true;
       }
     }
-    first_of_image_.resize(is_shown.size());
     for (std::size_t i = 0; i < is_shown.size(); ++i) {
       context_.advance_or_throw("regions", static_cast<double>(i) / static_cast<double>(is_shown.size()));
-      if (!is_shown[i]) continue;
-      result_.images_[i] = segmented(i);
-      first_of_image_[i] = take(result_.images_[i].count);
+      if (is_shown[i]) result_.images_[i] = segmented(i);
     }
   }
 
@@ -135,24 +135,33 @@ class RegionFinder {
   bool set_part(std::size_t mesh, std::size_t part) {
     const std::uint32_t face = first_face_[mesh][part];
     if (face == kInvalid) return true;
+    const TriMesh& surface = model_.meshes[mesh].surface;
+    const auto& [r, g, b, a] = material_of(model_, surface.parts[part]).base_color_factor;
+    PartRegions& regions = result_.parts_[mesh][part];
     const auto use = texture_use(mesh, part);
     if (use && result_.images_[use->image].count > 0) {
-      set_texture(result_.parts_[mesh][part], *use);
+      regions.first_ = first_of({use->image, {r, g, b}}, result_.images_[use->image].count);
+      set_texture(regions, *use);
       return true;
     }
-    const TriMesh& surface = model_.meshes[mesh].surface;
     const AttributeLayer* const colors = surface.find(Semantic::color);
     if (covers(colors, face) && !is_white(*colors)) return false;
-    const auto& factor = material_of(model_, surface.parts[part]).base_color_factor;
-    const auto [entry, is_new] = region_of_factor_.try_emplace(factor, kBackground);
-    if (is_new) entry->second = take(1);
-    result_.parts_[mesh][part].first_ = entry->second;
+    regions.first_ = first_of({kNoImage, {r, g, b}}, 1);
     return true;
+  }
+
+  /// An image, or none, with the factor that multiplies it.
+  using Look = std::pair<std::size_t, std::array<double, 3>>;
+
+  /// The first of the `count` regions of a look; new ones if it occurs for the first time.
+  std::uint32_t first_of(const Look& look, std::uint32_t count) {
+    const auto [entry, is_new] = first_of_look_.try_emplace(look, kBackground);
+    if (is_new) entry->second = take(count);
+    return entry->second;
   }
 
   void set_texture(PartRegions& regions, const TextureUse& use) const {
     const LabelMap& map = result_.images_[use.image];
-    regions.first_ = first_of_image_[use.image];
     regions.uv_set_ = use.ref->uv_set;
     regions.texel_label_ = map.labels;
     regions.width_ = map.width;
@@ -203,8 +212,7 @@ class RegionFinder {
   Context& context_;
   ModelRegions result_;
   std::vector<std::vector<std::uint32_t>> first_face_;  // [#meshes][#parts]
-  std::vector<std::uint32_t> first_of_image_;           // [#images]
-  std::map<std::array<double, 4>, std::uint32_t> region_of_factor_;
+  std::map<Look, std::uint32_t> first_of_look_;
 };
 
 std::uint32_t PartRegions::region_at(FaceId face, Vec2f uv) const {

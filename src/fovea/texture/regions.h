@@ -67,8 +67,8 @@ class ModelRegions {
 /// "Viewpoint entropy-driven simplification method for textured triangle meshes", 2009, section 3.1; theirs
 /// have one texture). Of each part:
 ///
-/// - With a base-colour texture: the regions of the image. Parts that show the same image share them,
-///   whatever colour their materials multiply it by, as factors move no borders.
+/// - With a base-colour texture: the regions of the image. Parts that show the same image, multiplied by the
+///   same base-colour factor, share them; another factor gives the same borders other numbers.
 /// - Else with vertex colours that are not all white: the triangles of the mesh are segmented, nodes being
 ///   triangles, edges the edges between them, weights the distances of mean colours times the base-colour
 ///   factor (display values 0 … 255); `k` and `min_size` then count triangles. Triangles and not vertices,
@@ -78,10 +78,10 @@ class ModelRegions {
 /// Emission, the other textures and transparency are not looked at. Parts without triangles have no region.
 /// Images that cannot be decoded count as absent and are reported ("image-not-shown").
 ///
-/// Regions of images come first, in the order of the images; then, mesh by mesh, factors and triangles. One
-/// image after another, each in parallel: for time and memory see `segment_image`; O(#F log #F) for coloured
-/// triangles. Throws Error(usage) for options out of range, Error(limit) for more than 2³² regions,
-/// Error(cancelled).
+/// Numbers are in the order in which meshes and their parts use them, coloured triangles after all other
+/// parts of their mesh. One image after another, each in parallel: for time and memory see `segment_image`;
+/// O(#F log #F) for coloured triangles. Throws Error(usage) for options out of range, Error(limit) for more
+/// than 2³² regions, Error(cancelled).
 ModelRegions model_regions(const Model& model, const SegmentOptions& options, Context& context);
 
 }  // namespace fovea
