@@ -171,21 +171,6 @@ TEST(TextureSignals, AFactorMultipliesLight) {
   EXPECT_EQ(half.at(1, 1)[2], 0);
 }
 
-TEST(TextureSignals, LargeImagesAreReduced) {
-  const Image8 image = test::pattern(64, 48);
-  EXPECT_EQ(fitted(image, 64 * 48, Context()).width, 64);
-  const Image8 half = fitted(image, 64 * 48 - 1, Context());
-  ASSERT_EQ(half.width, 32);
-  ASSERT_EQ(half.height, 24);
-  const int sum = image.at(10, 6)[1] + image.at(11, 6)[1] + image.at(10, 7)[1] + image.at(11, 7)[1];
-  EXPECT_EQ(half.at(5, 3)[1], (sum + 2) / 4);
-  const Image8 line = fitted(constant(1000, 1, {7}), 10, Context());
-  EXPECT_LE(line.width, 10);
-  EXPECT_EQ(line.height, 1);
-  EXPECT_EQ(line.at(3, 0)[0], 7);
-  EXPECT_EQ(fitted(constant(5, 5, {7}), 0, Context()).pixels.size(), 1u);
-}
-
 TEST(TextureSignals, RefusesOptionsOutOfRange) {
   for (const auto& [window, bins] : {std::array{1, 32}, {8, 32}, {65, 32}, {9, 1}, {9, 257}, {-3, 32}}) {
     TextureSignalOptions options;
@@ -201,17 +186,6 @@ TEST(TextureSignals, TheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.intensity.pixels, three.intensity.pixels);
   EXPECT_EQ(one.opponency.pixels, three.opponency.pixels);
   EXPECT_EQ(one.entropy.pixels, three.entropy.pixels);
-}
-
-TEST(TexelScan, WrapsAsSamplersDo) {
-  const std::array<int, 12> repeat{1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0},
-      mirror{1, 2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0};
-  for (int i = -5; i < 7; ++i) {
-    const auto k = static_cast<std::size_t>(i + 5);
-    EXPECT_EQ(wrapped_texel(i, 3, Wrap::repeat), repeat[k]) << i;
-    EXPECT_EQ(wrapped_texel(i, 3, Wrap::clamp), std::clamp(i, 0, 2)) << i;
-    EXPECT_EQ(wrapped_texel(i, 3, Wrap::mirror), mirror[k]) << i;
-  }
 }
 
 TEST(TexelScan, ASquareOfTwoTrianglesHasEachTexelOnce) {

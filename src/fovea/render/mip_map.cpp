@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "fovea/base/srgb.h"
+#include "fovea/model/wrap.h"
 
 namespace fovea {
 
@@ -27,7 +28,6 @@ Float4 load_floats(const std::uint16_t* from) {
 }
 
 constexpr float kUnit = 65535;
-constexpr float kMostTurns = 1e6f;
 /// Squared slope in texels beyond which nothing but the mean is seen.
 constexpr float kSteepest = 1e30f;
 constexpr int kNearest = 9728, kLinear = 9729, kNearestMipNearest = 9984, kLinearMipNearest = 9985,
@@ -39,19 +39,6 @@ float fast_log2(float x) {
   const auto exponent = static_cast<float>(static_cast<int>(bits >> 23) - 127);
   const float m = std::bit_cast<float>((bits & 0x007FFFFFu) | 0x3F800000u) - 1;
   return exponent + m * (1.4387257f + m * (-0.6777838f + m * (0.3211887f - m * 0.0821306f)));
-}
-
-/// A coordinate in texels, wrapped so that it lies in [0, size] (repeat: [0, size)).
-float wrapped(float u, int size, Wrap wrap) {
-  if (wrap == Wrap::repeat) {
-    u -= std::floor(u);
-  } else if (wrap == Wrap::mirror) {
-    u -= 2 * std::floor(0.5f * u);
-    if (u > 1) u = 2 - u;
-  } else {
-    u = std::clamp(u, 0.0f, 1.0f);
-  }
-  return u * static_cast<float>(size);
 }
 
 /// A texel index next to the range brought back into it.
@@ -133,16 +120,15 @@ Rgba MipMap::texel(std::size_t level, int x, int y) const {
 
 void MipMap::add_nearest(Footprint& footprint, const Level& level, Vec2f uv, const Sampler& sampler,
                          float weight) {
-  const auto x = static_cast<int>(wrapped(uv.x, level.width, sampler.wrap_u));
-  const auto y = static_cast<int>(wrapped(uv.y, level.height, sampler.wrap_v));
-  footprint.taps[footprint.count++] = {level.at(std::min(x, level.width - 1), std::min(y, level.height - 1)),
-                                       weight};
+  const int x = nearest_texel(uv.x, level.width, sampler.wrap_u);
+  const int y = nearest_texel(uv.y, level.height, sampler.wrap_v);
+  footprint.taps[footprint.count++] = {level.at(x, y), weight};
 }
 
 void MipMap::add_bilinear(Footprint& footprint, const Level& level, Vec2f uv, const Sampler& sampler,
                           float weight) {
-  const float x = wrapped(uv.x, level.width, sampler.wrap_u) - 0.5f;
-  const float y = wrapped(uv.y, level.height, sampler.wrap_v) - 0.5f;
+  const float x = wrapped_coordinate(uv.x, sampler.wrap_u) * static_cast<float>(level.width) - 0.5f;
+  const float y = wrapped_coordinate(uv.y, sampler.wrap_v) * static_cast<float>(level.height) - 0.5f;
   // Both are at least −0.5.
   const int ix = static_cast<int>(x + 1) - 1, iy = static_cast<int>(y + 1) - 1;
   const int x0 = wrapped(ix, level.width, sampler.wrap_u), x1 = wrapped(ix + 1, level.width, sampler.wrap_u);
@@ -180,9 +166,7 @@ void MipMap::add_look(Footprint& footprint, float lod, Vec2f uv, const Sampler& 
 
 Footprint MipMap::footprint(Vec2f uv, const UvSlopes& slopes, const Sampler& sampler, int anisotropy) const {
   Footprint footprint;
-  // Beyond that floats know no fractions of a texel; and what is not finite is nowhere.
-  if (!(std::abs(uv.x) < kMostTurns)) uv.x = 0;
-  if (!(std::abs(uv.y) < kMostTurns)) uv.y = 0;
+  uv = {usable_coordinate(uv.x), usable_coordinate(uv.y)};
   const auto w = static_cast<float>(width()), h = static_cast<float>(height());
   const auto texels2 = [&](Vec2f d) { return d.x * d.x * w * w + d.y * d.y * h * h; };
   const float dx2 = texels2(slopes.dx), dy2 = texels2(slopes.dy);

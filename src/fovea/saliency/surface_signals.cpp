@@ -13,6 +13,7 @@
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
 #include "fovea/io/image_codec.h"
+#include "fovea/model/image_fit.h"
 #include "fovea/saliency/material_texels.h"
 #include "fovea/saliency/uv_map.h"
 #include "fovea/surface/surface.h"

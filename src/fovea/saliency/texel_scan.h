@@ -8,17 +8,9 @@
 
 #include "fovea/base/math.h"
 #include "fovea/model/material.h"
+#include "fovea/model/wrap.h"
 
 namespace fovea {
-
-/// The texel of a row (or column) of `size` that a sampler reads at index `i`.
-inline int wrapped_texel(std::int64_t i, int size, Wrap wrap) {
-  if (i >= 0 && i < size) return static_cast<int>(i);
-  if (wrap == Wrap::clamp) return i < 0 ? 0 : size - 1;
-  const std::int64_t period = wrap == Wrap::mirror ? std::int64_t{2} * size : size;
-  const std::int64_t rest = i % period, at = rest < 0 ? rest + period : rest;
-  return static_cast<int>(at < size ? at : period - 1 - at);
-}
 
 /// Calls f(y, begin, end) for rows of texels whose centres (x + ½, y + ½), begin ≤ x < end, lie in a triangle
 /// given in texels: each texel in one of two triangles that share an edge. Of rows and columns only those at

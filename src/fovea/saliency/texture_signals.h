@@ -42,10 +42,6 @@ inline float grey(float r, float g, float b) { return 0.30f * r + 0.59f * g + 0.
 /// Most texels of an image that are judged; larger ones are reduced first.
 inline constexpr std::int64_t kMostTexels = std::int64_t{4096} * 4096;
 
-/// The image reduced by the smallest whole factor that leaves `most_texels` at most: means of boxes of
-/// stored values. As it is if it fits. O(#texels), parallel.
-Image8 fitted(const Image8& image, std::int64_t most_texels, const Context& context);
-
 /// The image's colours times light, rounded to bytes again: a colour factor on its texels. Three channels.
 /// O(#texels), parallel.
 Image8 with_factor(const Image8& image, const std::array<double, 3>& light, const Context& context);
