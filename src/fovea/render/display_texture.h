@@ -35,7 +35,8 @@ class DisplayTexture {
     const Pair x = pair(uv.x, l.width, wrap_u_), y = pair(uv.y, l.height, wrap_v_);
     const PackedColor* const texels = texels_.data() + l.first;
     const auto row = [&](int r) {
-      const PackedColor* const row_texels = texels + static_cast<std::size_t>(r) * static_cast<std::size_t>(l.width);
+      const PackedColor* const row_texels =
+          texels + static_cast<std::size_t>(r) * static_cast<std::size_t>(l.width);
       return mixed(row_texels[x.first], row_texels[x.second], x.share);
     };
     return mixed(row(y.first), row(y.second), y.share);

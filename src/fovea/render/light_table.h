@@ -31,7 +31,8 @@ class LightTable {
     }
     constexpr float kHalf = 0.5f * (kSide - 1);
     const float u = (x + 1) * kHalf, v = (y + 1) * kHalf;
-    const int i = u < kSide - 2 ? static_cast<int>(u) : kSide - 2, j = v < kSide - 2 ? static_cast<int>(v) : kSide - 2;
+    const int i = u < kSide - 2 ? static_cast<int>(u) : kSide - 2,
+              j = v < kSide - 2 ? static_cast<int>(v) : kSide - 2;
     const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
     // Neighbours in a row lie together.
     Float4 above, below;

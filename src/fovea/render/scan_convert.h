@@ -31,8 +31,10 @@ struct NearnessPlane {
     const double scale = kSubsamples / double_area;
     dx = (n1 * y2 - n2 * y1) * scale;
     dy = (n2 * x1 - n1 * x2) * scale;
-    const double x0 = static_cast<double>(std::int64_t{rect.left} * kSubsamples + kSubsamples / 2 - v[0].x) / kSubsamples;
-    const double y0 = static_cast<double>(std::int64_t{rect.top} * kSubsamples + kSubsamples / 2 - v[0].y) / kSubsamples;
+    const double x0 =
+        static_cast<double>(std::int64_t{rect.left} * kSubsamples + kSubsamples / 2 - v[0].x) / kSubsamples;
+    const double y0 =
+        static_cast<double>(std::int64_t{rect.top} * kSubsamples + kSubsamples / 2 - v[0].y) / kSubsamples;
     at_0 = n0 + dx * x0 + dy * y0;
     std::tie(low, high) = std::minmax({v[0].nearness, v[1].nearness, v[2].nearness});
   }

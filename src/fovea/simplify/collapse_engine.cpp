@@ -285,8 +285,7 @@ void Engine::price(Due& due) {
     due.place = cost_.best_place(due.item, due.quadric);
     return;
   }
-  if (!views_->is_fresh(due.item))
-    views_->note(due.item, best_view_place(due.item, due.quadric, memory_[0]));
+  if (!views_->is_fresh(due.item)) views_->note(due.item, best_view_place(due.item, due.quadric, memory_[0]));
   due.place = views_->noted(due.item);
 }
 
@@ -351,8 +350,7 @@ void Engine::try_edge(Due& due) {
   const std::size_t count = cost_.fallbacks(due.item, due.quadric, places.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_legal(due.item, places[i].position)) continue;
-    if (views_ != nullptr)
-      places[i].cost = views_->price(due.item, places[i], merge_, *memory_[0].scratch);
+    if (views_ != nullptr) places[i].cost = views_->price(due.item, places[i], merge_, *memory_[0].scratch);
     take_or_requeue(due, places[i]);
     return;
   }

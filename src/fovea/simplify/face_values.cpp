@@ -39,11 +39,14 @@ PackedColor rounded(Float4 display) {
 }  // namespace
 
 FaceValues::FaceValues(const CollapseState& state, const ShownSurface& shown, const RenderScene& scene,
-                       PixelContent content, int view_size)
+                       PixelContent content, int view_size, const ModelRegions* regions,
+                       std::span<const std::size_t> mesh_index)
     : state_(state),
       shown_(shown),
       content_(content),
       view_size_(view_size),
+      regions_(regions),
+      mesh_index_(mesh_index.begin(), mesh_index.end()),
       normal_channel_(find_channel(state, Semantic::normal, 0)),
       color_channel_(find_channel(state, Semantic::color, 0)) {
   for (const SceneMaterial& material : scene.materials) {
@@ -74,7 +77,8 @@ void FaceValues::make_lights(const RenderScene& scene) {
     const SceneMaterial& material = scene.materials[m];
     float metallic = material.metallic, roughness = material.roughness;
     if (material.metallic_roughness_texture) {
-      const MipMap& map = *scene.images[static_cast<std::size_t>(material.metallic_roughness_texture->image)].map;
+      const MipMap& map =
+          *scene.images[static_cast<std::size_t>(material.metallic_roughness_texture->image)].map;
       if (map.level_count() > 0) {
         const Rgba mean = map.texel(map.level_count() - 1, 0, 0);
         metallic *= mean.b;
@@ -112,7 +116,9 @@ std::uint32_t FaceValues::background() const {
   return content_ == PixelContent::color || content_ == PixelContent::lit ? kBackgroundColor : 0;
 }
 
-std::size_t FaceValues::value_count() const { return shown_.face_count() + std::size_t{1}; }
+std::size_t FaceValues::value_count() const {
+  return content_ == PixelContent::region ? regions_->count() : shown_.face_count() + std::size_t{1};
+}
 
 FaceLook FaceValues::look(const Showing& showing, std::uint32_t f, const PlannedCollapse* planned) const {
   FaceLook look;
@@ -121,6 +127,10 @@ FaceLook FaceValues::look(const Showing& showing, std::uint32_t f, const Planned
   if (content_ == PixelContent::face) return look;
   const MaterialLook& material = materials_[look.material];
   look.color = material.color;
+  if (content_ == PixelContent::region) {
+    set_region(look, showing.slot, f, planned);
+    if (!has_holes(f)) return look;
+  }
   std::array<const float*, 3> values;
   if (material.texture >= 0 && corner_values(material.channel, f, planned, values)) {
     look.texture = &textures_[static_cast<std::size_t>(material.texture)];
@@ -129,17 +139,29 @@ FaceLook FaceValues::look(const Showing& showing, std::uint32_t f, const Planned
       look.uv[k] = Float4{uv.x, uv.y, 0, 0};
     }
     const Float4 a = look.uv[1] - look.uv[0], b = look.uv[2] - look.uv[0];
-    look.texel_area = std::abs(a[0] * b[1] - a[1] * b[0]) * look.texture->full_width() * look.texture->full_height();
+    look.texel_area =
+        std::abs(a[0] * b[1] - a[1] * b[0]) * look.texture->full_width() * look.texture->full_height();
   }
   if (corner_values(color_channel_, f, planned, values)) {
     look.is_tinted = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      look.tint[k] = Float4{linear_to_srgb(values[k][0]), linear_to_srgb(values[k][1]),
-                            linear_to_srgb(values[k][2]), 0};
+      look.tint[k] =
+          Float4{linear_to_srgb(values[k][0]), linear_to_srgb(values[k][1]), linear_to_srgb(values[k][2]), 0};
     }
   }
   if (content_ == PixelContent::lit && !material.unlit) set_normals(look, showing, f, planned);
   return look;
+}
+
+void FaceValues::set_region(FaceLook& look, std::uint32_t slot, std::uint32_t f,
+                            const PlannedCollapse* planned) const {
+  look.face = state_.mesh_face[f];
+  look.regions = &regions_->part(mesh_index_[slot], shown_.part(f));
+  const int set = look.regions->uv_set();
+  std::array<const float*, 3> values;
+  look.has_region_uv = set >= 0 && corner_values(find_channel(state_, Semantic::uv, set), f, planned, values);
+  if (!look.has_region_uv) return;
+  for (std::size_t k = 0; k < 3; ++k) look.region_uv[k] = Float4{values[k][0], values[k][1], 0, 0};
 }
 
 /// What a channel has at the corners of a face; false if it has nothing there.
@@ -195,6 +217,7 @@ FaceValues::Shading::Shading(const FaceValues& values, const FaceLook& look,
   }
   normal_ = planes.plane(normal);
   if (look.is_tinted) tint_ = planes.plane(look.tint);
+  if (look.has_region_uv) region_uv_ = planes.plane(look.region_uv);
   if (look.is_lit) light_ = &values.lights_[view * values.finishes_.size() + material.finish];
   if (look.texture == nullptr) return;
   uv_ = planes.plane(look.uv);
@@ -215,6 +238,11 @@ bool FaceValues::Shading::at(int x, int y, std::uint32_t& value) const {
     color = look_.texture->at(level_, {uv[0], uv[1]});
   }
   if (byte(color, 3) < cutoff_) return false;
+  if (look_.regions != nullptr) {
+    const Float4 uv = region_uv_(x, y) * inverse;
+    value = look_.regions->region_at(look_.face, {uv[0], uv[1]});
+    return true;
+  }
   if (look_.is_tinted || light_ != nullptr) {
     Float4 shade = {static_cast<float>(byte(color, 0)), static_cast<float>(byte(color, 1)),
                     static_cast<float>(byte(color, 2)), 0};

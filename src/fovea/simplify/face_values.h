@@ -11,6 +11,7 @@
 #include "fovea/render/scene.h"
 #include "fovea/simplify/shown_surface.h"
 #include "fovea/simplify/value_merge.h"
+#include "fovea/texture/regions.h"
 
 namespace fovea {
 
@@ -24,14 +25,18 @@ enum class PixelContent {
 
 /// A face as it looks: what its corners have for the content.
 struct FaceLook {
-  const DisplayTexture* texture = nullptr;  ///< None: `color` or `number` all over.
+  const DisplayTexture* texture = nullptr;  ///< None: `color` all over.
   std::array<Float4, 3> uv;                 ///< Where a texture is looked up, transformed: the first two.
   float texel_area = 0;                     ///< Twice the face's area in texels of the whole image.
   PackedColor color = 0;                    ///< Of the material's factor.
   bool is_tinted = false, is_lit = false;
-  std::array<Float4, 3> tint;   ///< Vertex colours, as display values 0 … 1: the first three.
-  std::array<Vec3f, 3> normal;  ///< In the world.
-  std::uint32_t number = 0;     ///< Of the face.
+  std::array<Float4, 3> tint;            ///< Vertex colours, as display values 0 … 1: the first three.
+  std::array<Vec3f, 3> normal;           ///< In the world.
+  const PartRegions* regions = nullptr;  ///< With content `region`, and what these are asked with:
+  FaceId face;                           ///< of the mesh,
+  bool has_region_uv = false;
+  std::array<Float4, 3> region_uv;  ///< as the mesh has them.
+  std::uint32_t number = 0;         ///< Of the shown face, from 1.
   std::uint32_t material = 0;
 };
 
@@ -47,8 +52,10 @@ struct PlannedCollapse {
 /// them. Refers to all that it was made of.
 class FaceValues {
  public:
+  /// `regions` is for content `region` alone; `mesh_index` are the meshes of the engine in the model.
   FaceValues(const CollapseState& state, const ShownSurface& shown, const RenderScene& scene,
-             PixelContent content, int view_size);
+             PixelContent content, int view_size, const ModelRegions* regions = nullptr,
+             std::span<const std::size_t> mesh_index = {});
 
   /// What a pixel without any surface has.
   std::uint32_t background() const;
@@ -72,7 +79,7 @@ class FaceValues {
     const FaceValues& values_;
     const FaceLook& look_;
     CornerPlanes::Plane normal_;  // turned to the side that is seen; the last is 1
-    CornerPlanes::Plane uv_, tint_;
+    CornerPlanes::Plane uv_, tint_, region_uv_;
     std::size_t level_ = 0;
     const LightTable* light_ = nullptr;
     std::uint32_t cutoff_ = 0;
@@ -80,8 +87,8 @@ class FaceValues {
 
  private:
   struct MaterialLook {
-    int texture = -1;  // into textures_
-    int channel = -1;  // of the state: the texture coordinates
+    int texture = -1;    // into textures_
+    int channel = -1;    // of the state: the texture coordinates
     Vec2f u, v, offset;  // uv' = u · uv.x + v · uv.y + offset
     PackedColor color = 0;
     std::uint32_t cutoff = 0;  // alpha below which there is a hole, 0 … 255
@@ -97,6 +104,7 @@ class FaceValues {
                      std::array<const float*, 3>& values) const;
   void set_normals(FaceLook& look, const Showing& showing, std::uint32_t f,
                    const PlannedCollapse* planned) const;
+  void set_region(FaceLook& look, std::uint32_t slot, std::uint32_t f, const PlannedCollapse* planned) const;
   void make_lights(const RenderScene& scene);
   int add_texture(const RenderScene& scene, const SceneTexture& texture, Rgba factor);
 
@@ -104,6 +112,8 @@ class FaceValues {
   const ShownSurface& shown_;
   const PixelContent content_;
   const int view_size_;
+  const ModelRegions* const regions_;
+  std::vector<std::size_t> mesh_index_;
   std::vector<MaterialLook> materials_;
   std::vector<Finish> finishes_;
   std::vector<LightTable> lights_;  // [#views][#finishes], with content `lit`

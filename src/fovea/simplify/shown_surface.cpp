@@ -19,8 +19,8 @@ Mat4 mixed(const Mat4& a, const Mat4& b, double along) {
 }  // namespace
 
 ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
-                           std::span<const std::size_t> mesh_index, const RenderScene& scene, const Pose& pose,
-                           std::vector<View> views, int size, const Context& context)
+                           std::span<const std::size_t> mesh_index, const RenderScene& scene,
+                           const Pose& pose, std::vector<View> views, int size, const Context& context)
     : state_(state), materials_(scene.materials) {
   for (const View& view : views) projections_.emplace_back(view, SampleGrid{size, size, 1});
   const std::vector<Instance> instances_shown = instances(model, pose);
@@ -30,8 +30,12 @@ ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
     first_showing_.push_back(static_cast<std::uint32_t>(showings_.size()));
     for (std::size_t i = 0; i < instances_shown.size(); ++i) {
       if (instances_shown[i].mesh != mesh_index[s]) continue;
-      Showing showing{s, static_cast<std::uint32_t>(vertices), static_cast<std::uint32_t>(faces),
-                      scene.meshes[i].surface.mirrored, instances_shown[i].world, {}};
+      Showing showing{s,
+                      static_cast<std::uint32_t>(vertices),
+                      static_cast<std::uint32_t>(faces),
+                      scene.meshes[i].surface.mirrored,
+                      instances_shown[i].world,
+                      {}};
       const std::vector<Mat4> bent = vertex_transforms(model, pose, instances_shown[i]);
       for (std::size_t v = 0; v < bent.size(); ++v)
         showing.bent.push_back(bent[state.mesh_vertex[state.slots[s].first_vertex + v].index()]);
@@ -41,7 +45,8 @@ ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
     }
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
       const FaceId id = state.mesh_face[state.slots[s].first_face + f];
-      const int material = mesh.parts[mesh.face_part[id.index()]].material;
+      face_part_.push_back(mesh.face_part[id.index()]);
+      const int material = mesh.parts[face_part_.back()].material;
       face_material_.push_back(
           static_cast<std::uint32_t>(material >= 0 ? material : static_cast<int>(materials_.size()) - 1));
     }

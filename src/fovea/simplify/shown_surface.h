@@ -21,8 +21,8 @@ struct Showing {
   std::uint32_t slot = 0;
   std::uint32_t first_vertex = 0, first_face = 0;  ///< Shown number of the slot's first.
   bool mirrored = false;
-  Mat4 world;                ///< Mesh to world ...
-  std::vector<Mat4> bent;    ///< ... or, if joints or morph targets bend it, that of each vertex [#V of slot].
+  Mat4 world;              ///< Mesh to world ...
+  std::vector<Mat4> bent;  ///< ... or, if joints or morph targets bend it, that of each vertex [#V of slot].
 };
 
 /// Where views see the vertices of the collapse engine.
@@ -46,6 +46,8 @@ class ShownSurface {
   /// Whether the back of a face is shown too.
   bool is_double_sided(std::uint32_t f) const { return materials_[face_material_[f]].double_sided; }
   std::uint32_t material(std::uint32_t f) const { return face_material_[f]; }
+  /// Of its mesh.
+  std::uint32_t part(std::uint32_t f) const { return face_part_[f]; }
   std::uint32_t shown_face(const Showing& showing, std::uint32_t f) const {
     return showing.first_face + f - state_.slots[showing.slot].first_face;
   }
@@ -83,12 +85,12 @@ class ShownSurface {
 
   const CollapseState& state_;
   std::vector<SceneMaterial> materials_;
-  std::vector<std::uint32_t> face_material_;  // [#F of the engine]
-  std::vector<Projection> projections_;       // [#views]
-  std::vector<Showing> showings_;             // by slot
-  std::vector<std::uint32_t> first_showing_;  // [#slots + 1]
-  std::uint32_t face_count_ = 0;              // shown
-  std::vector<ScreenVertex> screen_;          // [#shown vertices][#views]
+  std::vector<std::uint32_t> face_material_, face_part_;  // [#F of the engine]
+  std::vector<Projection> projections_;                   // [#views]
+  std::vector<Showing> showings_;                         // by slot
+  std::vector<std::uint32_t> first_showing_;              // [#slots + 1]
+  std::uint32_t face_count_ = 0;                          // shown
+  std::vector<ScreenVertex> screen_;                      // [#shown vertices][#views]
 };
 
 }  // namespace fovea

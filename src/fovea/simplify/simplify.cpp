@@ -206,8 +206,8 @@ OptionList describe(SimplifyOptions& o) {
       {"image-pass", "What the metric image compares: base colour alone, or under light.",
        choice(o.image_pass, {"base-color", "lit"}), ""},
   };
-  const OptionList views = describe(o.views);
-  list.insert(list.end(), views.begin(), views.end());
+  for (const OptionList& more : {describe(o.views), describe(o.regions)})
+    list.insert(list.end(), more.begin(), more.end());
   return list;
 }
 
@@ -229,10 +229,11 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
         make_collapse_state(batch.meshes, batch.scales, batch.importance, diagonal, options, context);
     std::unique_ptr<ViewMetric> views;
     if (options.metric != Metric::quadric) {
-      views = std::make_unique<ViewMetric>(state, model, batch.mesh_index, batch.importance, options, context);
+      views =
+          std::make_unique<ViewMetric>(state, model, batch.mesh_index, batch.importance, options, context);
     }
-    CollapseOutcome outcome = collapse(state, target.value_or(0), error_bound(options, diagonal), options,
-                                       views.get(), context);
+    CollapseOutcome outcome =
+        collapse(state, target.value_or(0), error_bound(options, diagonal), options, views.get(), context);
     views.reset();
     state = {};
     combine(result, outcome);

@@ -11,6 +11,7 @@
 #include "fovea/model/model.h"
 #include "fovea/render/view.h"
 #include "fovea/simplify/record.h"
+#include "fovea/texture/felzenszwalb.h"
 
 namespace fovea {
 
@@ -59,6 +60,7 @@ struct SimplifyOptions {
   ViewOptions views{.set = ViewSet::dodecahedron};
   std::int64_t view_size = 256;  ///< Pixels along each side of a view.
   ImagePass image_pass = ImagePass::lit;
+  SegmentOptions regions;  ///< Of textures, for `Metric::entropy`.
   /// Never change the topology: no component vanishes, no hole or handle closes.
   bool keep_topology = false;
 };

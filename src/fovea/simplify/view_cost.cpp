@@ -87,8 +87,8 @@ class ViewCost::Scratch {
     seen_[i].shading.reset();
   }
   Pixel& touch(int x, int y) {
-    Pixel& p = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                       static_cast<std::size_t>(x)];
+    Pixel& p =
+        pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
     if (p.view != view_) {
       p = {view_, kInvalid, 0};
       touched_[count_++] = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
@@ -101,8 +101,8 @@ class ViewCost::Scratch {
   std::vector<std::uint32_t> changes_;  // [#shown faces], the last collapse that changes them
   std::uint32_t collapse_ = 0, view_ = 0;
   std::vector<LocalFace> faces_;
-  std::vector<std::optional<FaceLook>> looks_;  // [#faces_]
-  std::vector<Seen> seen_;                      // [#faces_]
+  std::vector<std::optional<FaceLook>> looks_;         // [#faces_]
+  std::vector<Seen> seen_;                             // [#faces_]
   std::vector<std::array<std::uint16_t, 2>> touched_;  // [#pixels], of which `count_` count
   std::size_t count_ = 0;
   std::vector<PlannedCollapse> planned_;  // [#showings of the slot]
@@ -136,8 +136,8 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
       for (const Showing& showing : shown.showings()) {
         const std::uint32_t first = state.slots[showing.slot].first_face;
         const std::uint32_t last = showing.slot + 1 < state.slots.size()
-                                      ? state.slots[showing.slot + 1].first_face
-                                      : static_cast<std::uint32_t>(state.mesh.faces.size());
+                                       ? state.slots[showing.slot + 1].first_face
+                                       : static_cast<std::uint32_t>(state.mesh.faces.size());
         for (std::uint32_t f = first; f < last; ++f) {
           if (state.mesh.face_alive(f)) put_in(v, showing, f);
         }
@@ -186,10 +186,9 @@ void ViewCost::take_out(std::size_t v, const Showing& showing, std::uint32_t f) 
   const std::array<ScreenVertex, 3> at = corners(v, showing, f);
   if (!ShownSurface::is_seen(at, shown_.is_double_sided(f), showing.mirrored)) return;
   ViewState& view = views_[v];
-  view.lists.remove(shown_.shown_face(showing, f), at,
-                    [&](std::size_t, const Fragment* before, const Fragment* after) {
-                      swap_value(view, before, after);
-                    });
+  view.lists.remove(
+      shown_.shown_face(showing, f), at,
+      [&](std::size_t, const Fragment* before, const Fragment* after) { swap_value(view, before, after); });
 }
 
 void ViewCost::put_in(std::span<const std::uint32_t> faces) {
@@ -263,8 +262,7 @@ void ViewCost::gather(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerg
 }
 
 ViewCost::LocalFace ViewCost::local_face(const Showing& showing, std::uint32_t f,
-                                                  const PlannedCollapse& planned,
-                                                  const ScreenVertex* merged) const {
+                                         const PlannedCollapse& planned, const ScreenVertex* merged) const {
   LocalFace local;
   local.showing = &showing;
   local.planned = &planned;

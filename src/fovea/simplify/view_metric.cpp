@@ -13,7 +13,10 @@ namespace {
 
 /// How much the quadric error (distance² × area, in diagonals) counts beside the share of all pixels that
 /// change.
-double tie() { const char* s = std::getenv("FT"); return s ? std::atof(s) : 1.0; }
+double tie() {
+  const char* s = std::getenv("FT");
+  return s ? std::atof(s) : 1.0;
+}
 
 PixelContent content_of(const SimplifyOptions& options) {
   switch (options.metric) {
@@ -35,7 +38,10 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
   scene_ = make_render_scene(model, pose, context);
   shown_ = std::make_unique<ShownSurface>(state, model, mesh_index, scene_, pose,
                                           views_of(options.views, model, pose, scene_), size, context);
-  values_ = std::make_unique<FaceValues>(state, *shown_, scene_, content_of(options), size);
+  if (options.metric == Metric::entropy)
+    regions_ = std::make_unique<ModelRegions>(model_regions(model, options.regions, context));
+  values_ = std::make_unique<FaceValues>(state, *shown_, scene_, content_of(options), size, regions_.get(),
+                                         mesh_index);
   const bool is_image = options.metric == Metric::image;
   cost_ = std::make_unique<ViewCost>(state, *shown_, *values_,
                                      is_image ? ViewMeasure::image : ViewMeasure::entropy, size, context);

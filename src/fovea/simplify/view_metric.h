@@ -17,9 +17,9 @@ namespace fovea {
 
 /// What collapses cost by what views see, for the collapse engine.
 ///
-/// A price is what the views lose (view_cost.h) by vertex importance, with a little of the quadric error, which
-/// decides where views see nothing and keeps the order sane where pixels are chance. Prices that changes
-/// around an edge have outdated are known; so an edge is priced again only when it comes up.
+/// A price is what the views lose (view_cost.h) by vertex importance, with a little of the quadric error,
+/// which decides where views see nothing and keeps the order sane where pixels are chance. Prices that
+/// changes around an edge have outdated are known; so an edge is priced again only when it comes up.
 class ViewMetric {
  public:
   /// Renders the meshes of `state`, whose numbers in the model are `mesh_index`; `importance` are the fields
@@ -54,6 +54,7 @@ class ViewMetric {
   const CollapseState& state_;
   const Placement placement_;
   RenderScene scene_;
+  std::unique_ptr<ModelRegions> regions_;
   std::unique_ptr<ShownSurface> shown_;
   std::unique_ptr<FaceValues> values_;
   std::unique_ptr<ViewCost> cost_;
