@@ -39,6 +39,18 @@ Mat4 compose(Vec3d t, Quat q, Vec3d s) {
   return r;
 }
 
+namespace {
+
+// Out of sight of the optimiser.
+__attribute__((noinline)) float narrowed(double x) { return static_cast<float>(x); }
+
+}  // namespace
+
+Vec3d in_single_precision(Vec3d p) {
+  return {static_cast<double>(narrowed(p.x)), static_cast<double>(narrowed(p.y)),
+          static_cast<double>(narrowed(p.z))};
+}
+
 Vec3d transform_point(const Mat4& a, Vec3d p) {
   return transform_direction(a, p) + Vec3d{a(0, 3), a(1, 3), a(2, 3)};
 }

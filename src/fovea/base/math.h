@@ -41,6 +41,10 @@ using Vec2d = Vec2<double>;
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 
+/// What is left of p in single precision. Not `Vec3d(Vec3f(p))`: where GCC 12 works on two components at
+/// once it leaves out both conversions.
+Vec3d in_single_precision(Vec3d p);
+
 template <class T>
 constexpr T dot(Vec3<T> a, Vec3<T> b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;

@@ -80,6 +80,8 @@ struct MeshSlot {
 
   Vec3d to_engine(Vec3f p) const { return (Vec3d(p) - center) * scale; }
   Vec3f to_local(Vec3d p) const { return Vec3f(p / scale + center); }
+  /// The same to calculate on with: what a file will have.
+  Vec3d to_local_exact(Vec3d p) const { return in_single_precision(p / scale + center); }
 };
 
 /// A whole component as a candidate to go.

@@ -76,7 +76,7 @@ Mat4 ShownSurface::to_world(const Showing& showing, std::uint32_t a, std::uint32
 }
 
 void ShownSurface::project(const Showing& showing, Vec3d p, const Mat4& world, ScreenVertex* out) const {
-  const Vec3d at = transform_point(world, Vec3d(state_.slots[showing.slot].to_local(p)));
+  const Vec3d at = transform_point(world, state_.slots[showing.slot].to_local_exact(p));
   for (std::size_t view = 0; view < view_count(); ++view) {
     const Projection& projection = projections_[view];
     if (!projection.project(projection.view().to_eye(at), out[view])) out[view].x = kUnplaced;

@@ -11,14 +11,6 @@ namespace fovea {
 
 namespace {
 
-std::int64_t squared_difference(PackedColor x, PackedColor y) {
-  const auto d = [&](int shift) {
-    return static_cast<int>(x >> shift & 255) - static_cast<int>(y >> shift & 255);
-  };
-  const int r = d(0), g = d(8), b = d(16), coverage = d(24);
-  return r * r + g * g + b * b + coverage * coverage / 8;
-}
-
 /// log₂ by the series of the area tangent: the same bits on every machine.
 double log2_of(double x) {
   int exponent = 0;
@@ -34,6 +26,14 @@ double log2_of(double x) {
 }
 
 }  // namespace
+
+std::int64_t squared_difference(PackedColor x, PackedColor y) {
+  const auto d = [&](int shift) {
+    return static_cast<int>(x >> shift & 255) - static_cast<int>(y >> shift & 255);
+  };
+  const int r = d(0), g = d(8), b = d(16), coverage = d(24);
+  return r * r + g * g + b * b + coverage * coverage / 8;
+}
 
 /// A face around the edge, in one showing.
 struct ViewCost::LocalFace {
@@ -142,10 +142,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
           if (state.mesh.face_alive(f)) put_in(v, showing, f);
         }
       }
-      if (measure == ViewMeasure::entropy) continue;
-      view.original.resize(pixels);
-      for (std::size_t p = 0; p < pixels; ++p)
-        view.original[p] = value_of(view.lists.at(p).empty() ? nullptr : view.lists.at(p).data());
+      if (measure == ViewMeasure::image) view.original = picture(v);
     }
   });
 }
@@ -215,7 +212,7 @@ double ViewCost::along(std::uint32_t a, std::uint32_t b, Vec3d p) const {
 }
 
 void ViewCost::move(std::uint32_t a, std::uint32_t b, Vec3d p) {
-  const Vec3d rounded{Vec3f(p)};
+  const Vec3d rounded = in_single_precision(p);
   const auto [low, high] = std::minmax(a, b);
   shown_.move(b, low, high, rounded, along(low, high, rounded));
 }
@@ -224,7 +221,7 @@ void ViewCost::move(std::uint32_t a, std::uint32_t b, Vec3d p) {
 
 double ViewCost::change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge,
                         Scratch& scratch) const {
-  const Vec3d rounded{Vec3f(p)};  // as the engine keeps it
+  const Vec3d rounded = in_single_precision(p);  // as the engine keeps it
   scratch.begin_collapse();
   gather(a, b, rounded, merge, scratch);
   std::int64_t sum = 0;
@@ -389,15 +386,21 @@ std::int64_t ViewCost::change_of_entropy(const ViewState& view, Scratch& scratch
   return std::abs(sum);
 }
 
+std::vector<std::uint32_t> ViewCost::picture(std::size_t view) const {
+  const FragmentLists& lists = views_[view].lists;
+  std::vector<std::uint32_t> values(static_cast<std::size_t>(lists.width()) * static_cast<std::size_t>(lists.height()));
+  for (std::size_t p = 0; p < values.size(); ++p)
+    values[p] = value_of(lists.at(p).empty() ? nullptr : lists.at(p).data());
+  return values;
+}
+
 double ViewCost::total() const {
   std::int64_t sum = 0;
   double bits = 0;
   for (const ViewState& view : views_) {
     if (measure_ == ViewMeasure::image) {
-      for (std::size_t p = 0; p < view.original.size(); ++p) {
-        const std::span<const Fragment> list = view.lists.at(p);
-        sum += squared_difference(value_of(list.empty() ? nullptr : list.data()), view.original[p]);
-      }
+      const std::vector<std::uint32_t> now = picture(static_cast<std::size_t>(&view - views_.data()));
+      for (std::size_t p = 0; p < now.size(); ++p) sum += squared_difference(now[p], view.original[p]);
     } else {
       std::int64_t logs = 0;
       for (const std::uint32_t n : view.count) logs += n_log_n_[n];

@@ -22,6 +22,9 @@ enum class ViewMeasure {
   image,    ///< The colour of each pixel, against the original's.
 };
 
+/// |x − y|² over the channels, 0 … 255; between a pixel with and one without a surface 8128 more.
+std::int64_t squared_difference(PackedColor x, PackedColor y);
+
 /// What collapses change in a set of views, from lists of the fragments behind every pixel: only pixels that
 /// the triangles around an edge cover are looked at, and nothing is drawn again.
 ///
@@ -61,6 +64,8 @@ class ViewCost {
   double total() const;
   std::size_t view_count() const { return views_.size(); }
   const FragmentLists& fragments(std::size_t view) const { return views_[view].lists; }
+  /// What is in front of each pixel of a view now. [#pixels]
+  std::vector<std::uint32_t> picture(std::size_t view) const;
   std::size_t bytes() const;
 
  private:

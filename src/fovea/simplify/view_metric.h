@@ -50,6 +50,8 @@ class ViewMetric {
   void after_collapse(std::uint32_t a, std::uint32_t b);
   void lose(std::span<const std::uint32_t> faces) { cost_->take_out(faces); }
 
+  const ViewCost& cost() const { return *cost_; }
+
  private:
   const CollapseState& state_;
   const Placement placement_;
