@@ -38,13 +38,20 @@ class Simplify : public Verb {
               "Spend the triangles where the vertex attribute _IMPORTANCE is high."},
              {"fovea simplify vase.glb -o vase-small.glb --ratio 0.05 --saliency auto",
               "Try what people look at in several ways and keep what looks best."},
+             {"fovea simplify shoe.glb -o shoe-web.glb --ratio 0.05 --metric image",
+              "Lose what shows least in pictures from all around; takes seconds."},
              {"fovea simplify room.glb -o room-web.glb --ratio 0.2 --quantize --compression meshopt",
               "Simplify and store compactly."}}};
   }
 
   void declare(Arguments& arguments) override {
     arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
-    arguments.add("Simplification", describe(options_));
+    OptionList options = describe(options_);
+    const auto metric =
+        std::find_if(options.begin(), options.end(), [](const Option& o) { return o.name == "metric"; });
+    OptionList views(metric, options.end());
+    options.erase(metric, options.end());
+    arguments.add("Simplification", options);
     arguments.add(
         "Simplification",
         {{"importance",
@@ -63,6 +70,7 @@ class Simplify : public Verb {
     OptionList saliency = describe(saliency_options_);
     std::erase_if(saliency, [](const Option& o) { return o.name != "key-poses" && o.name != "up"; });
     arguments.add("Saliency", saliency);
+    arguments.add("Views", views);
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));

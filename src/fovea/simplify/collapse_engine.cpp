@@ -78,6 +78,7 @@ class Engine {
 
  private:
   void fill_queue();
+  void price_edges();
   void reserve_record();
   StopReason loop();
   void take_batch();
@@ -91,7 +92,9 @@ class Engine {
   bool is_dearer(const Due& due, double price);
   bool is_legal(std::uint32_t e, Vec3d p);
   void take_or_requeue(const Due& due, const Candidate& where);
-  void try_vanish(std::uint32_t component);
+  void try_vanish(const Due& due);
+  double vanish_price(std::uint32_t component);
+  void find_living(std::uint32_t component);
   void put_off(const Due& due);
   void count_blocked();
 
@@ -140,8 +143,15 @@ void Engine::fill_queue() {
     std::vector<std::uint32_t> all(edge_count_);
     std::iota(all.begin(), all.end(), 0u);
     price_by_views(all);
-    return;
+  } else {
+    price_edges();
   }
+  if (options_.keep_topology || state_.components.count() < 2) return;
+  for (std::uint32_t i = 0; i < state_.components.count(); ++i)
+    queue_.set(edge_count_ + i, vanish_price(i));
+}
+
+void Engine::price_edges() {
   std::vector<float> cost(edge_count_);
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
@@ -152,9 +162,23 @@ void Engine::fill_queue() {
   for (std::uint32_t e = 0; e < edge_count_; ++e) {
     if (std::isfinite(cost[e])) queue_.set(e, cost[e]);
   }
-  if (options_.keep_topology || state_.components.count() < 2) return;
-  for (std::uint32_t i = 0; i < state_.components.count(); ++i)
-    queue_.set(edge_count_ + i, state_.vanish[i].cost);
+}
+
+/// The price of losing what is left of a component.
+double Engine::vanish_price(std::uint32_t component) {
+  const double cost = state_.vanish[component].cost;
+  if (views_ == nullptr) return cost;
+  find_living(component);
+  return views_->price_of_loss(ring_, cost, *memory_[0].scratch);
+}
+
+/// Lists the faces of a component that are left, in `ring_`.
+void Engine::find_living(std::uint32_t component) {
+  const FaceComponents& all = state_.components;
+  ring_.clear();
+  for (std::uint32_t k = all.first[component]; k < all.first[component + 1]; ++k) {
+    if (mesh_.face_alive(all.faces[k])) ring_.push_back(all.faces[k]);
+  }
 }
 
 /// The best place for an edge by what views lose there, at that price. Of half-edge collapses the cheaper.
@@ -215,7 +239,7 @@ StopReason Engine::loop() {
     for (Due& due : batch_) {
       if (mesh_.live_faces <= target_) break;
       if (due.item >= edge_count_) {
-        try_vanish(due.item - edge_count_);
+        try_vanish(due);
       } else if (mesh_.edge_alive(due.item) && !queue_.contains(due.item)) {
         try_edge(due);
       }
@@ -391,18 +415,16 @@ void Engine::put_off(const Due& due) {
   if (++tries_[due.item] <= kMaxRetries) queue_.set(due.item, std::max(due.cost, 1e-20) * kRetryFactor);
 }
 
-void Engine::try_vanish(std::uint32_t component) {
-  const FaceComponents& all = state_.components;
-  ring_.clear();
-  for (std::uint32_t k = all.first[component]; k < all.first[component + 1]; ++k) {
-    if (mesh_.face_alive(all.faces[k])) ring_.push_back(all.faces[k]);
-  }
+void Engine::try_vanish(const Due& due) {
+  const std::uint32_t component = due.item - edge_count_;
+  find_living(component);
   if (ring_.empty() || ring_.size() == mesh_.live_faces) return;
   for (const std::uint32_t f : ring_) {
     for (const std::uint32_t v : mesh_.faces[f].vertex) {
       if (mesh_.vertices[v].locked) return;
     }
   }
+  if (views_ != nullptr && is_dearer(due, vanish_price(component))) return;
   if (state_.vanish[component].error > max_error_) {
     over_error_ = true;
     return;

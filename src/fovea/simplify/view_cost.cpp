@@ -224,6 +224,24 @@ double ViewCost::change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMe
   const Vec3d rounded = in_single_precision(p);  // as the engine keeps it
   scratch.begin_collapse();
   gather(a, b, rounded, merge, scratch);
+  return change(scratch);
+}
+
+double ViewCost::change_without(std::span<const std::uint32_t> faces, Scratch& scratch) const {
+  scratch.begin_collapse();
+  scratch.planned_.assign(1, {});
+  for (const std::uint32_t f : faces) {
+    for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) {
+      LocalFace local = local_face(showing, f, scratch.planned_[0], nullptr);
+      local.goes = true;
+      scratch.add(local);
+    }
+  }
+  return change(scratch);
+}
+
+/// The change by the faces that are gathered.
+double ViewCost::change(Scratch& scratch) const {
   std::int64_t sum = 0;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     if (!lay_over(v, scratch)) continue;

@@ -53,6 +53,9 @@ class ViewCost {
   /// pixels)).
   double change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, Scratch& scratch) const;
 
+  /// What it changes if some faces go, of one mesh.
+  double change_without(std::span<const std::uint32_t> faces, Scratch& scratch) const;
+
   /// To be called before anything changes, with all faces that will: takes them out of the lists.
   void take_out(std::span<const std::uint32_t> faces);
   /// To be called before a collapse of a and b to p changes the mesh, after which b is left.
@@ -86,6 +89,7 @@ class ViewCost {
   struct LocalFace;
   LocalFace local_face(const Showing& showing, std::uint32_t f, const PlannedCollapse& planned,
                        const ScreenVertex* merged) const;
+  double change(Scratch& scratch) const;
   bool lay_over(std::size_t view, Scratch& scratch) const;
   const FaceValues::Shading& shading(Scratch& scratch, std::uint32_t i, std::size_t view) const;
   template <class Change>

@@ -39,6 +39,9 @@ class ViewMetric {
   double price(std::uint32_t e, const Candidate& place, const ValueMerge& merge,
                ViewCost::Scratch& scratch) const;
 
+  /// The price of losing faces whose quadric error is `cost`, without importance.
+  double price_of_loss(std::span<const std::uint32_t> faces, double cost, ViewCost::Scratch& scratch) const;
+
   /// Notes the best place of an edge as of now, at its price.
   void note(std::uint32_t e, const Candidate& place);
   /// Whether nothing has changed around the edge since its price was noted.
