@@ -35,7 +35,8 @@ DisplayTexture::DisplayTexture(const MipMap& map, Rgba factor, const Sampler& sa
 
 std::size_t DisplayTexture::level_for(float texels_per_pixel) const {
   if (!(texels_per_pixel > 1)) return 0;
-  const int level = (std::ilogb(texels_per_pixel) + 1) / 2 - left_out_;
+  constexpr float kMost = 1e18f;  // more than any image has; of infinity there is no exponent
+  const int level = (std::ilogb(std::min(texels_per_pixel, kMost)) + 1) / 2 - left_out_;
   return static_cast<std::size_t>(std::clamp(level, 0, static_cast<int>(levels_.size()) - 1));
 }
 

@@ -22,8 +22,8 @@ class DisplayTexture {
   /// Levels of more than `most` texels along a side are left out. O(#texels).
   DisplayTexture(const MipMap& map, Rgba factor, const Sampler& sampler, int most);
 
-  /// The level whose texels are about as large as pixels that are `texel_area` texels of the whole image
-  /// large.
+  /// The level whose texels are about as large as pixels, each of which covers so many texels of the whole
+  /// image.
   std::size_t level_for(float texels_per_pixel) const;
   /// Texels of the image, all of them.
   float full_width() const { return full_width_; }

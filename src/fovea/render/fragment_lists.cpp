@@ -2,6 +2,12 @@
 
 namespace fovea {
 
+std::size_t FragmentLists::bytes() const {
+  std::size_t sum = pool_.capacity() * sizeof(Fragment) + pixels_.size() * sizeof(List);
+  for (const auto& rooms : free_) sum += rooms.capacity() * sizeof(rooms[0]);
+  return sum;
+}
+
 /// Gives the list room for another number of fragments; as many as fit are kept.
 void FragmentLists::resize(List& list, std::uint32_t size) {
   const std::uint32_t kept = std::min(list.size, size);

@@ -20,7 +20,9 @@ class LightTable {
   struct Light {
     float tinted = 0, white = 0;
   };
-  /// `normal` of any length but 0. Mixed of four entries, within about 0.02 of the rig where it is rough.
+  /// `normal` of any length but 0. Mixed of four entries: of the normals that face the eye, with roughness
+  /// 0.5 and up, 99 in 100 are within 0.03 of the rig, on the mean 0.003. Bright rims before a lamp, narrower
+  /// than entries, are the rest.
   Light at(Vec3f normal) const {
     const float inverse = 1 / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
     float x = normal.x * inverse, y = normal.y * inverse;
