@@ -45,13 +45,12 @@ struct ViewCost::LocalFace {
 };
 
 /// The faces around an edge and the pixels that they cover, before and after its collapse.
-class ViewCost::Scratch {
- public:
-  Scratch(int width, int height, std::size_t faces)
-      : width_(width),
-        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
-        changes_(faces, 0),
-        touched_(pixels_.size()) {}
+struct ViewCost::Scratch {
+  Scratch(int view_width, int view_height, std::size_t shown_faces)
+      : width(view_width),
+        pixels(static_cast<std::size_t>(view_width) * static_cast<std::size_t>(view_height)),
+        changed_by(shown_faces, 0),
+        touched(pixels.size()) {}
 
   /// A face as the present view would see it.
   struct Seen {
@@ -65,49 +64,49 @@ class ViewCost::Scratch {
   };
 
   void begin_collapse() {
-    ++collapse_;
-    faces_.clear();
-    looks_.clear();
+    ++collapse;
+    faces.clear();
+    looks.clear();
   }
   void add(const LocalFace& face) {
-    changes_[face.shown] = collapse_;
-    faces_.push_back(face);
-    looks_.emplace_back();
+    changed_by[face.shown] = collapse;
+    faces.push_back(face);
+    looks.emplace_back();
   }
   /// Whether the collapse changes a shown face.
-  bool changes(std::uint32_t shown) const { return changes_[shown] == collapse_; }
+  bool changes(std::uint32_t shown) const { return changed_by[shown] == collapse; }
 
   void begin_view() {
-    ++view_;
-    count_ = 0;
-    seen_.resize(faces_.size());
+    ++view;
+    count = 0;
+    seen.resize(faces.size());
   }
   void see(std::uint32_t i, const std::array<ScreenVertex, 3>& corners) {
-    seen_[i].corners = corners;
-    seen_[i].shading.reset();
+    seen[i].corners = corners;
+    seen[i].shading.reset();
   }
   Pixel& touch(int x, int y) {
     Pixel& p =
-        pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-    if (p.view != view_) {
-      p = {view_, kInvalid, 0};
-      touched_[count_++] = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+        pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    if (p.view != view) {
+      p = {view, kInvalid, 0};
+      touched[count++] = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
     }
     return p;
   }
 
-  int width_;
-  std::vector<Pixel> pixels_;
-  std::vector<std::uint32_t> changes_;  // [#shown faces], the last collapse that changes them
-  std::uint32_t collapse_ = 0, view_ = 0;
-  std::vector<LocalFace> faces_;
-  std::vector<std::optional<FaceLook>> looks_;         // [#faces_]
-  std::vector<Seen> seen_;                             // [#faces_]
-  std::vector<std::array<std::uint16_t, 2>> touched_;  // [#pixels], of which `count_` count
-  std::size_t count_ = 0;
-  std::vector<PlannedCollapse> planned_;  // [#showings of the slot]
-  std::vector<ScreenVertex> merged_;      // [#showings of the slot][#views]
-  std::vector<std::pair<std::uint32_t, int>> deltas_;
+  int width;
+  std::vector<Pixel> pixels;
+  std::vector<std::uint32_t> changed_by;  // [#shown faces], the last collapse that changes them
+  std::uint32_t collapse = 0, view = 0;
+  std::vector<LocalFace> faces;
+  std::vector<std::optional<FaceLook>> looks;         // [#faces]
+  std::vector<Seen> seen;                             // [#faces]
+  std::vector<std::array<std::uint16_t, 2>> touched;  // [#pixels], of which `count` count
+  std::size_t count = 0;
+  std::vector<PlannedCollapse> planned;  // [#showings of the slot]
+  std::vector<ScreenVertex> merged;      // [#showings of the slot][#views]
+  std::vector<std::pair<std::uint32_t, int>> deltas;
 };
 
 ViewCost::~ViewCost() = default;
@@ -229,10 +228,10 @@ double ViewCost::change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMe
 
 double ViewCost::change_without(std::span<const std::uint32_t> faces, Scratch& scratch) const {
   scratch.begin_collapse();
-  scratch.planned_.assign(1, {});
+  scratch.planned.assign(1, {});
   for (const std::uint32_t f : faces) {
     for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) {
-      LocalFace local = local_face(showing, f, scratch.planned_[0], nullptr);
+      LocalFace local = local_face(showing, f, scratch.planned[0], nullptr);
       local.goes = true;
       scratch.add(local);
     }
@@ -258,15 +257,15 @@ void ViewCost::gather(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerg
   const auto [low, high] = std::minmax(a, b);
   const double t = along(low, high, p);
   const std::span<const Showing> showings = shown_.showings(state_.slot_of_vertex(a));
-  scratch.merged_.resize(showings.size() * views_.size());
-  scratch.planned_.clear();
+  scratch.merged.resize(showings.size() * views_.size());
+  scratch.planned.clear();
   for (const Showing& showing : showings)
-    scratch.planned_.push_back({a, b, p, &merge, shown_.to_world(showing, low, high, t)});
+    scratch.planned.push_back({a, b, p, &merge, shown_.to_world(showing, low, high, t)});
   for (std::size_t s = 0; s < showings.size(); ++s) {
-    ScreenVertex* const merged = scratch.merged_.data() + s * views_.size();
-    shown_.project(showings[s], p, scratch.planned_[s].world, merged);
+    ScreenVertex* const merged = scratch.merged.data() + s * views_.size();
+    shown_.project(showings[s], p, scratch.planned[s].world, merged);
     const auto add = [&](std::uint32_t c) {
-      scratch.add(local_face(showings[s], c / 3, scratch.planned_[s], merged));
+      scratch.add(local_face(showings[s], c / 3, scratch.planned[s], merged));
     };
     for (const std::uint32_t c : state_.mesh.ring(a)) add(c);
     for (const std::uint32_t c : state_.mesh.ring(b)) {
@@ -302,8 +301,8 @@ ViewCost::LocalFace ViewCost::local_face(const Showing& showing, std::uint32_t f
 bool ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
   scratch.begin_view();
   const FragmentLists& lists = views_[view].lists;
-  for (std::uint32_t i = 0; i < scratch.faces_.size(); ++i) {
-    const LocalFace& local = scratch.faces_[i];
+  for (std::uint32_t i = 0; i < scratch.faces.size(); ++i) {
+    const LocalFace& local = scratch.faces[i];
     const auto in_view = [&](const std::array<const ScreenVertex*, 3>& v) {
       return std::array<ScreenVertex, 3>{v[0][view], v[1][view], v[2][view]};
     };
@@ -322,7 +321,7 @@ bool ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
         Scratch::Pixel& pixel = scratch.touch(x, y);
         if (pixel.local != kInvalid &&
             (nearness < pixel.nearness ||
-             (nearness == pixel.nearness && local.shown > scratch.faces_[pixel.local].shown)))
+             (nearness == pixel.nearness && local.shown > scratch.faces[pixel.local].shown)))
           return;
         std::uint32_t value = 0;
         if (local.has_holes && !shading(scratch, i, view).at(x, y, value)) return;
@@ -331,15 +330,15 @@ bool ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
       });
     });
   }
-  return scratch.count_ > 0;
+  return scratch.count > 0;
 }
 
 /// What face i would show, made when it is first asked for.
 const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::uint32_t i, std::size_t view) const {
-  Scratch::Seen& seen = scratch.seen_[i];
+  Scratch::Seen& seen = scratch.seen[i];
   if (!seen.shading) {
-    const LocalFace& local = scratch.faces_[i];
-    std::optional<FaceLook>& look = scratch.looks_[i];
+    const LocalFace& local = scratch.faces[i];
+    std::optional<FaceLook>& look = scratch.looks[i];
     if (!look) look = values_.look(*local.showing, local.face, local.planned);
     seen.shading.emplace(values_, *look, seen.corners, view, local.showing->mirrored);
   }
@@ -350,16 +349,16 @@ const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::uint32_t i, 
 template <class Change>
 void ViewCost::for_changes(const ViewState& view, Scratch& scratch, Change&& change) const {
   const auto number = static_cast<std::size_t>(&view - views_.data());
-  for (const auto& [x, y] : std::span(scratch.touched_).first(scratch.count_)) {
+  for (const auto& [x, y] : std::span(scratch.touched).first(scratch.count)) {
     const std::size_t p = view.lists.pixel(x, y);
     const std::span<const Fragment> list = view.lists.at(p);
-    const Scratch::Pixel& pixel = scratch.pixels_[p];
+    const Scratch::Pixel& pixel = scratch.pixels[p];
     std::size_t stays = 0;
     while (stays < list.size() && scratch.changes(list[stays].triangle)) ++stays;
     const bool is_new =
         pixel.local != kInvalid &&
         (stays == list.size() ||
-         Fragment{pixel.nearness, scratch.faces_[pixel.local].shown, 0}.is_before(list[stays]));
+         Fragment{pixel.nearness, scratch.faces[pixel.local].shown, 0}.is_before(list[stays]));
     if (!is_new && stays == 0) continue;
     std::uint32_t after = values_.background();
     if (is_new) {
@@ -381,7 +380,7 @@ std::int64_t ViewCost::change_of_image(const ViewState& view, Scratch& scratch) 
 }
 
 std::int64_t ViewCost::change_of_entropy(const ViewState& view, Scratch& scratch) const {
-  auto& deltas = scratch.deltas_;
+  auto& deltas = scratch.deltas;
   deltas.clear();
   const auto add = [&](std::uint32_t region, int pixels) {
     for (auto& [known, count] : deltas) {
@@ -406,7 +405,8 @@ std::int64_t ViewCost::change_of_entropy(const ViewState& view, Scratch& scratch
 
 std::vector<std::uint32_t> ViewCost::picture(std::size_t view) const {
   const FragmentLists& lists = views_[view].lists;
-  std::vector<std::uint32_t> values(static_cast<std::size_t>(lists.width()) * static_cast<std::size_t>(lists.height()));
+  std::vector<std::uint32_t> values(static_cast<std::size_t>(lists.width()) *
+                                    static_cast<std::size_t>(lists.height()));
   for (std::size_t p = 0; p < values.size(); ++p)
     values[p] = value_of(lists.at(p).empty() ? nullptr : lists.at(p).data());
   return values;

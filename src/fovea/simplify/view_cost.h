@@ -44,7 +44,7 @@ class ViewCost {
   ~ViewCost();
 
   /// Memory of a thread that prices.
-  class Scratch;
+  struct Scratch;
   std::shared_ptr<Scratch> make_scratch() const;
 
   /// What the collapse of the edge a–b to p changes: squared display values (0 … 3 · 255² for a pixel) over
