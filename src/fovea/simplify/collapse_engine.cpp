@@ -12,6 +12,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/prefetch.h"
 #include "fovea/simplify/collapse_queue.h"
+#include "fovea/simplify/collapse_step.h"
 #include "fovea/simplify/edge_cost.h"
 #include "fovea/simplify/legality.h"
 #include "fovea/simplify/value_merge.h"
@@ -62,7 +63,8 @@ class Engine {
         tries_(edge_count_, 0),
         cost_(state, options.placement),
         legality_(state),
-        merge_(state, options.placement) {
+        merge_(state, options.placement),
+        stepper_(state, cost_, legality_, merge_, queue_, views, outcome_.record) {
     if (views_ == nullptr) return;
     for (int i = 0; i < context.thread_count(); ++i) memory_.push_back(views_->make_memory(state));
   }
@@ -71,7 +73,7 @@ class Engine {
     fill_queue();
     reserve_record();
     outcome_.stop = loop();
-    outcome_.error = error_so_far_;
+    outcome_.error = stepper_.error();
     if (outcome_.stop == StopReason::stuck) count_blocked();
     return std::move(outcome_);
   }
@@ -98,16 +100,7 @@ class Engine {
   void put_off(const Due& due);
   void count_blocked();
 
-  void commit(std::uint32_t e, const Candidate& where, double error);
-  void merge_edges(std::uint32_t a, std::uint32_t b);
-  void drop_shared_faces(std::uint32_t a, std::uint32_t b);
-  void drop_coincident_faces(std::uint32_t b);
-  void leave_edge(std::uint32_t e, std::uint32_t half_edge);
-  void drop_face(std::uint32_t f);
-  void retire_values(std::uint32_t a, std::uint32_t b);
-  void look_at_values(std::uint32_t v);
   void revive_edges(std::uint32_t b);
-  void finish_step(CollapseStep step, double error);
 
   CollapseState& state_;
   CollapseMesh& mesh_;
@@ -126,29 +119,25 @@ class Engine {
   std::vector<Due> batch_;
   std::vector<std::uint32_t> changed_;  // vertices merged since the batch was priced
   CollapseOutcome outcome_;
-  double error_so_far_ = 0;
+  CollapseStepper stepper_;
   bool over_error_ = false;
-
-  /// A corner of a face that was dropped, at a vertex of several values.
-  struct DroppedCorner {
-    std::uint32_t corner, vertex;
-  };
-  std::vector<DroppedCorner> dropped_;
-  // Scratch of commit() and try_vanish().
-  std::vector<std::uint32_t> ring_;
+  std::vector<std::uint32_t> ring_;  // scratch
 };
 
 void Engine::fill_queue() {
   if (views_ != nullptr) {
     std::vector<std::uint32_t> all(edge_count_);
     std::iota(all.begin(), all.end(), 0u);
-    price_by_views(all);
+    constexpr std::size_t kStep = 1 << 12;
+    for (std::size_t begin = 0; begin < all.size(); begin += kStep) {
+      price_by_views(std::span(all).subspan(begin, std::min(kStep, all.size() - begin)));
+      if (!context_.advance("price", static_cast<double>(begin) / static_cast<double>(all.size()))) return;
+    }
   } else {
     price_edges();
   }
   if (options_.keep_topology || state_.components.count() < 2) return;
-  for (std::uint32_t i = 0; i < state_.components.count(); ++i)
-    queue_.set(edge_count_ + i, vanish_price(i));
+  for (std::uint32_t i = 0; i < state_.components.count(); ++i) queue_.set(edge_count_ + i, vanish_price(i));
 }
 
 void Engine::price_edges() {
@@ -407,7 +396,9 @@ void Engine::take_or_requeue(const Due& due, const Candidate& where) {
     over_error_ = true;
     return;
   }
-  commit(due.item, where, error);
+  const std::uint32_t b = stepper_.collapse(due.item, where.position, error);
+  revive_edges(b);
+  changed_.push_back(b);
 }
 
 void Engine::put_off(const Due& due) {
@@ -429,160 +420,7 @@ void Engine::try_vanish(const Due& due) {
     over_error_ = true;
     return;
   }
-  CollapseStep step;
-  step.kind = StepKind::vanish;
-  step.mesh = state_.slot_of_face(ring_.front());
-  const std::vector<std::uint32_t> faces = ring_;
-  if (views_ != nullptr) views_->lose(faces);
-  for (const std::uint32_t f : faces) drop_face(f);
-  finish_step(step, state_.vanish[component].error);
-}
-
-// --- Carrying out a collapse -----------------------------------------------------------------------
-
-void Engine::commit(std::uint32_t e, const Candidate& where, double error) {
-  auto [a, b] = mesh_.edges[e].ends;
-  if (mesh_.vertices[a].locked || (!mesh_.vertices[b].locked && where.position == mesh_.position(a))) {
-    std::swap(a, b);
-    merge_.plan(e, a, b, where.position);
-  }
-  const std::uint32_t m = state_.slot_of_vertex(a);
-  const MeshSlot& slot = state_.slots[m];
-  const bool moved = !(where.position == mesh_.position(b));
-
-  if (views_ != nullptr) views_->before_collapse(a, b, where.position);
-  merge_.apply(a, b, m, outcome_.record);
-  dropped_.clear();
-  drop_shared_faces(a, b);
-  merge_edges(a, b);
-  drop_coincident_faces(b);
-
-  mesh_.vertices[b].position = Vec3f(where.position);
-  mesh_.quadrics[b] += mesh_.quadrics[a];
-  if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
-  if (mesh_.vertices[a].refused) mesh_.vertices[b].refused = 1;
-  retire_values(a, b);
-  cost_.forget(a);
-  look_at_values(b);
-  if (views_ != nullptr) views_->after_collapse(a, b);
-  revive_edges(b);
-  changed_.push_back(b);
-
-  CollapseStep step;
-  step.mesh = m;
-  step.removed = state_.mesh_vertex[a];
-  step.kept = state_.mesh_vertex[b];
-  step.moved = moved;
-  if (moved) step.position = slot.to_local(where.position);
-  finish_step(step, error);
-}
-
-/// A half-edge leaves edge e; with the last the edge goes.
-void Engine::leave_edge(std::uint32_t e, std::uint32_t half_edge) {
-  mesh_.edges[e].remove(half_edge);
-  if (!mesh_.edge_alive(e)) queue_.remove(e);
-}
-
-void Engine::drop_face(std::uint32_t f) {
-  for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
-    if (cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
-    leave_edge(mesh_.edge(c), c);
-    mesh_.unlink_corner(c);
-  }
-  mesh_.kill_face(f);
-  outcome_.record.removed_faces.push_back(state_.mesh_face[f]);
-}
-
-void Engine::drop_shared_faces(std::uint32_t a, std::uint32_t b) {
-  ring_.clear();
-  mesh_.for_ring(a, [&](std::uint32_t c) {
-    const CornerView at_c = mesh_.view(c);
-    if (at_c.next == b || at_c.previous == b) ring_.push_back(c / 3);
-  });
-  for (const std::uint32_t f : ring_) drop_face(f);
-}
-
-/// Gives a's triangles and edges to b; two edges to the same neighbour become one.
-void Engine::merge_edges(std::uint32_t a, std::uint32_t b) {
-  // A neighbour of b is marked, with its edge to b.
-  const std::uint32_t mark = mesh_.new_mark();
-  const auto note = [&](std::uint32_t w, std::uint32_t e) {
-    mesh_.vertices[w].mark = mark;
-    mesh_.vertices[w].mark_count = e;
-  };
-  mesh_.for_ring(b, [&](std::uint32_t c) {
-    const CornerView at_c = mesh_.view(c);
-    note(at_c.next, at_c.to_next);
-    note(at_c.previous, at_c.to_previous);
-  });
-  const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
-    const std::uint32_t e = mesh_.edge(half_edge);
-    if (mesh_.vertices[w].mark != mark) {
-      note(w, e);
-      mesh_.edges[e].ends = {b, w};
-    } else if (const std::uint32_t kept = mesh_.vertices[w].mark_count; kept != e) {
-      mesh_.edge(half_edge) = kept;
-      mesh_.edges[kept].add(half_edge);
-      leave_edge(e, half_edge);
-    }
-  };
-  mesh_.for_ring(a, [&](std::uint32_t c) {
-    const CornerView at_c = mesh_.view(c);
-    take_over(c, at_c.next);
-    take_over(CollapseMesh::previous(c), at_c.previous);
-    mesh_.faces[c / 3].vertex[c % 3] = b;
-  });
-  mesh_.join_rings(a, b);
-}
-
-/// After a collapse that pinches the surface two triangles can lie on each other. Back to back they
-/// enclose nothing: both go. Of two that face the same way one goes.
-void Engine::drop_coincident_faces(std::uint32_t b) {
-  if (!legality_.may_coincide()) return;
-  ring_.clear();
-  mesh_.for_ring(b, [&](std::uint32_t c) { ring_.push_back(c); });
-  for (std::size_t i = 0; i < ring_.size(); ++i) {
-    if (!mesh_.face_alive(ring_[i] / 3)) continue;
-    const CornerView one = mesh_.view(ring_[i]);
-    for (std::size_t j = i + 1; j < ring_.size(); ++j) {
-      if (!mesh_.face_alive(ring_[j] / 3)) continue;
-      const CornerView other = mesh_.view(ring_[j]);
-      const bool back_to_back = one.next == other.previous && one.previous == other.next;
-      if (!back_to_back && !(one.next == other.next && one.previous == other.previous)) continue;
-      drop_face(ring_[j] / 3);
-      if (back_to_back) {
-        drop_face(ring_[i] / 3);
-        break;
-      }
-    }
-  }
-}
-
-/// Values that lost their last triangle (a chart that ends) stay in the error as they were: what they make
-/// up for goes into the quadric of their vertex for good.
-void Engine::retire_values(std::uint32_t a, std::uint32_t b) {
-  for (const auto& [c, vertex] : dropped_) {
-    const std::uint32_t v = vertex == a ? b : vertex;
-    const auto ring = mesh_.ring(v);
-    bool retired = false;
-    for (Channel& channel : state_.channels) {
-      const std::uint32_t value = channel.corner_value[c];
-      if (channel.kind != ChannelKind::fitted || value == kInvalid) continue;
-      if (std::any_of(ring.begin(), ring.end(),
-                      [&](std::uint32_t d) { return channel.corner_value[d] == value; }))
-        continue;
-      mesh_.quadrics[v] += cost_.separate(channel, v, value);
-      std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0f);
-      retired = true;
-    }
-    if (retired && v != b) look_at_values(v);
-  }
-}
-
-/// To be called when the values or triangles at v have changed.
-void Engine::look_at_values(std::uint32_t v) {
-  merge_.update_singles(v);
-  cost_.refresh(v);
+  stepper_.vanish(ring_, state_.vanish[component].error);
 }
 
 /// Gives edges at b that were refused another chance, at their present cost. The others keep the cost
@@ -606,16 +444,6 @@ void Engine::revive_edges(std::uint32_t b) {
     revive(at_c.to_next);
     revive(at_c.to_previous);
   });
-}
-
-void Engine::finish_step(CollapseStep step, double error) {
-  error_so_far_ = std::max(error_so_far_, error);
-  CollapseRecord& record = outcome_.record;
-  step.error_rel = static_cast<float>(error_so_far_);
-  step.faces_end = static_cast<std::uint32_t>(record.removed_faces.size());
-  step.joins_end = static_cast<std::uint32_t>(record.joins.size());
-  step.writes_end = static_cast<std::uint32_t>(record.writes.size());
-  record.steps.push_back(step);
 }
 
 void Engine::count_blocked() {

@@ -1,0 +1,171 @@
+#include "fovea/simplify/collapse_step.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "fovea/simplify/view_metric.h"
+
+namespace fovea {
+
+std::uint32_t CollapseStepper::collapse(std::uint32_t e, Vec3d p, double error) {
+  auto [a, b] = mesh_.edges[e].ends;
+  if (mesh_.vertices[a].locked || (!mesh_.vertices[b].locked && p == mesh_.position(a))) {
+    std::swap(a, b);
+    merge_.plan(e, a, b, p);
+  }
+  const std::uint32_t m = state_.slot_of_vertex(a);
+  const bool moved = !(p == mesh_.position(b));
+
+  if (views_ != nullptr) views_->before_collapse(a, b, p);
+  merge_.apply(a, b, m, record_);
+  dropped_.clear();
+  drop_shared_faces(a, b);
+  merge_edges(a, b);
+  drop_coincident_faces(b);
+
+  mesh_.vertices[b].position = Vec3f(p);
+  mesh_.quadrics[b] += mesh_.quadrics[a];
+  if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
+  if (mesh_.vertices[a].refused) mesh_.vertices[b].refused = 1;
+  retire_values(a, b);
+  cost_.forget(a);
+  look_at_values(b);
+  if (views_ != nullptr) views_->after_collapse(a, b);
+
+  CollapseStep step;
+  step.mesh = m;
+  step.removed = state_.mesh_vertex[a];
+  step.kept = state_.mesh_vertex[b];
+  step.moved = moved;
+  if (moved) step.position = state_.slots[m].to_local(p);
+  finish_step(step, error);
+  return b;
+}
+
+void CollapseStepper::vanish(std::span<const std::uint32_t> faces, double error) {
+  if (views_ != nullptr) views_->lose(faces);
+  CollapseStep step;
+  step.kind = StepKind::vanish;
+  step.mesh = state_.slot_of_face(faces.front());
+  for (const std::uint32_t f : faces) drop_face(f);
+  finish_step(step, error);
+}
+
+/// A half-edge leaves edge e; with the last the edge goes.
+void CollapseStepper::leave_edge(std::uint32_t e, std::uint32_t half_edge) {
+  mesh_.edges[e].remove(half_edge);
+  if (!mesh_.edge_alive(e)) queue_.remove(e);
+}
+
+void CollapseStepper::drop_face(std::uint32_t f) {
+  for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
+    if (cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
+    leave_edge(mesh_.edge(c), c);
+    mesh_.unlink_corner(c);
+  }
+  mesh_.kill_face(f);
+  record_.removed_faces.push_back(state_.mesh_face[f]);
+}
+
+void CollapseStepper::drop_shared_faces(std::uint32_t a, std::uint32_t b) {
+  ring_.clear();
+  mesh_.for_ring(a, [&](std::uint32_t c) {
+    const CornerView at_c = mesh_.view(c);
+    if (at_c.next == b || at_c.previous == b) ring_.push_back(c / 3);
+  });
+  for (const std::uint32_t f : ring_) drop_face(f);
+}
+
+/// Gives a's triangles and edges to b; two edges to the same neighbour become one.
+void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
+  // A neighbour of b is marked, with its edge to b.
+  const std::uint32_t mark = mesh_.new_mark();
+  const auto note = [&](std::uint32_t w, std::uint32_t e) {
+    mesh_.vertices[w].mark = mark;
+    mesh_.vertices[w].mark_count = e;
+  };
+  mesh_.for_ring(b, [&](std::uint32_t c) {
+    const CornerView at_c = mesh_.view(c);
+    note(at_c.next, at_c.to_next);
+    note(at_c.previous, at_c.to_previous);
+  });
+  const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
+    const std::uint32_t e = mesh_.edge(half_edge);
+    if (mesh_.vertices[w].mark != mark) {
+      note(w, e);
+      mesh_.edges[e].ends = {b, w};
+    } else if (const std::uint32_t kept = mesh_.vertices[w].mark_count; kept != e) {
+      mesh_.edge(half_edge) = kept;
+      mesh_.edges[kept].add(half_edge);
+      leave_edge(e, half_edge);
+    }
+  };
+  mesh_.for_ring(a, [&](std::uint32_t c) {
+    const CornerView at_c = mesh_.view(c);
+    take_over(c, at_c.next);
+    take_over(CollapseMesh::previous(c), at_c.previous);
+    mesh_.faces[c / 3].vertex[c % 3] = b;
+  });
+  mesh_.join_rings(a, b);
+}
+
+/// After a collapse that pinches the surface two triangles can lie on each other. Back to back they
+/// enclose nothing: both go. Of two that face the same way one goes.
+void CollapseStepper::drop_coincident_faces(std::uint32_t b) {
+  if (!legality_.may_coincide()) return;
+  ring_.clear();
+  mesh_.for_ring(b, [&](std::uint32_t c) { ring_.push_back(c); });
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    if (!mesh_.face_alive(ring_[i] / 3)) continue;
+    const CornerView one = mesh_.view(ring_[i]);
+    for (std::size_t j = i + 1; j < ring_.size(); ++j) {
+      if (!mesh_.face_alive(ring_[j] / 3)) continue;
+      const CornerView other = mesh_.view(ring_[j]);
+      const bool back_to_back = one.next == other.previous && one.previous == other.next;
+      if (!back_to_back && !(one.next == other.next && one.previous == other.previous)) continue;
+      drop_face(ring_[j] / 3);
+      if (back_to_back) {
+        drop_face(ring_[i] / 3);
+        break;
+      }
+    }
+  }
+}
+
+/// Values that lost their last triangle (a chart that ends) stay in the error as they were: what they make
+/// up for goes into the quadric of their vertex for good.
+void CollapseStepper::retire_values(std::uint32_t a, std::uint32_t b) {
+  for (const auto& [c, vertex] : dropped_) {
+    const std::uint32_t v = vertex == a ? b : vertex;
+    const auto ring = mesh_.ring(v);
+    bool retired = false;
+    for (Channel& channel : state_.channels) {
+      const std::uint32_t value = channel.corner_value[c];
+      if (channel.kind != ChannelKind::fitted || value == kInvalid) continue;
+      if (std::any_of(ring.begin(), ring.end(),
+                      [&](std::uint32_t d) { return channel.corner_value[d] == value; }))
+        continue;
+      mesh_.quadrics[v] += cost_.separate(channel, v, value);
+      std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0f);
+      retired = true;
+    }
+    if (retired && v != b) look_at_values(v);
+  }
+}
+
+/// To be called when the values or triangles at v have changed.
+void CollapseStepper::look_at_values(std::uint32_t v) {
+  merge_.update_singles(v);
+  cost_.refresh(v);
+}
+
+void CollapseStepper::finish_step(CollapseStep step, double error) {
+  error_ = std::max(error_, error);
+  step.error_rel = static_cast<float>(error_);
+  step.faces_end = static_cast<std::uint32_t>(record_.removed_faces.size());
+  step.joins_end = static_cast<std::uint32_t>(record_.joins.size());
+  step.writes_end = static_cast<std::uint32_t>(record_.writes.size());
+  record_.steps.push_back(step);
+}
+
+}  // namespace fovea
