@@ -40,12 +40,12 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
   scene_ = make_render_scene(model, pose, context);
   const std::vector<View> views = views_of(options.views, model, pose, scene_);
   if (static_cast<double>(views.size()) * size * size > kMostPixels) {
-    throw Error(ErrorKind::limit,
-                fmt::format("{} views of {} × {} pixels are more than a metric looks at", views.size(), size, size),
-                "--view-size", "take fewer or smaller views");
+    throw Error(
+        ErrorKind::limit,
+        fmt::format("{} views of {} × {} pixels are more than a metric looks at", views.size(), size, size),
+        "--view-size", "take fewer or smaller views");
   }
-  shown_ = std::make_unique<ShownSurface>(state, model, mesh_index, scene_, pose,
-                                          views, size, context);
+  shown_ = std::make_unique<ShownSurface>(state, model, mesh_index, scene_, pose, views, size, context);
   if (options.metric == Metric::entropy)
     regions_ = std::make_unique<ModelRegions>(model_regions(model, options.regions, context));
   values_ = std::make_unique<FaceValues>(state, *shown_, scene_, content_of(options), size, regions_.get(),
