@@ -121,7 +121,7 @@ class Render : public Verb {
   }
 
   std::vector<View> chosen_views(const Model& model, const Pose& pose, const RenderScene& scene) const {
-    std::vector<View> views = views_of(view_options_, model, pose, scene);
+    std::vector<View> views = views_of(view_options_, model, pose, scene.sphere);
     if (view_ == 0) return views;
     if (static_cast<std::size_t>(view_) > views.size()) {
       throw Error(ErrorKind::usage, fmt::format("there are only {} views", views.size()), "--view");

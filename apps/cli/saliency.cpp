@@ -241,7 +241,7 @@ class Saliency : public Verb {
     const Model heat = heat_map(model, fields);  // has no textures to decode
     const Pose pose = pose_of(heat, options_.pose);
     const RenderScene scene = make_render_scene(heat, pose, context);
-    const std::vector<View> views = views_of(view_options_, heat, pose, scene);
+    const std::vector<View> views = views_of(view_options_, heat, pose, scene.sphere);
     Image8 sheet = empty_sheet(views.size(), columns_, options);
     arrange(render_views(scene, views, options, context, fields), sheet);
     return sheet;

@@ -23,6 +23,14 @@ std::string stop_text(const SimplifyResult& result, bool reached) {
                      count_text(result.triangles_target));
 }
 
+/// Which metric decided, from how many triangles on.
+std::string metric_text(const SimplifyResult& result) {
+  if (result.metric_from == 0 || result.metric_from >= result.triangles_before)
+    return to_string(result.metric);
+  return fmt::format("{} from {} on, quadric before", to_string(result.metric),
+                     plural(result.metric_from, "triangle", "triangles"));
+}
+
 std::string blocked_text(const BlockCounts& blocked, const SimplifyOptions& options) {
   if (blocked.edges == 0) return {};
   TextTable table("lrl");
@@ -58,6 +66,9 @@ Json result_json(const SimplifyResult& result, bool reached) {
           {"stop", to_string(result.stop)},
           {"error_relative", number_json(result.error_rel)},
           {"error_absolute", number_json(result.error_abs)},
+          {"metric", to_string(result.metric)},
+          {"metric_from", result.metric_from},
+          {"hidden", result.triangles_hidden},
           {"blocked",
            {{"edges", b.edges},
             {"topology", b.topology},
@@ -71,6 +82,12 @@ std::string result_text(const SimplifyResult& result, const SimplifyOptions& opt
   TextTable table("l");
   table.row({"error", fmt::format("{} of the diagonal, {} units", number_text(result.error_rel),
                                   number_text(result.error_abs))});
+  table.row({"metric", metric_text(result)});
+  if (result.triangles_hidden > 0) {
+    table.row({"hidden",
+               plural(result.triangles_hidden, "triangle that no view sees", "triangles that no view sees") +
+                   " dropped"});
+  }
   table.row({"stopped", stop_text(result, reached)});
   return table.text(0) + blocked_text(result.blocked, options);
 }

@@ -319,9 +319,9 @@ TEST(Render, OwnCamerasMustBeThere) {
   const Pose pose = rest_pose(model);
   const RenderScene scene = make_render_scene(model, pose, context);
   ViewOptions options;
-  EXPECT_EQ(views_of(options, model, pose, scene).size(), 24u);
+  EXPECT_EQ(views_of(options, model, pose, scene.sphere).size(), 24u);
   options.set = ViewSet::cameras;
-  EXPECT_THROW(views_of(options, model, pose, scene), Error);
+  EXPECT_THROW(views_of(options, model, pose, scene.sphere), Error);
 }
 
 TEST(Render, FieldsAreShownAsHeat) {

@@ -18,7 +18,7 @@ TEST(CollapseState, TheEngineKnowsWhereThingsAreInTheirMesh) {
   const TriMesh* const meshes[] = {&one, &two};
   const double scales[] = {1, 1};
   const VertexField* const importance[] = {nullptr, nullptr};
-  const CollapseState state = make_collapse_state(meshes, scales, importance, 1.0, {}, {});
+  const CollapseState state = make_collapse_state(meshes, scales, importance, {}, 1.0, {}, {});
   ASSERT_EQ(state.mesh.faces.size(), one.face_count() + two.face_count());
   EXPECT_FALSE(state.mesh_face[0] == FaceId{0} && state.mesh_face[1] == FaceId{1}) << "nothing was moved";
   for (std::uint32_t f = 0; f < state.mesh.faces.size(); ++f) {

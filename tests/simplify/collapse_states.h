@@ -14,7 +14,7 @@ inline CollapseState state_of(const TriMesh& mesh, const SimplifyOptions& option
   const VertexField* const importance[] = {nullptr};
   Context context;
   context.threads = 1;
-  return make_collapse_state(meshes, scales, importance, 1.0, options, context);
+  return make_collapse_state(meshes, scales, importance, {}, 1.0, options, context);
 }
 
 /// The vertex at a position of the mesh; the state's positions are around its centre.

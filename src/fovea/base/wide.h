@@ -1,5 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 /// Before the definition of a function whose loops the compiler can turn into vector instructions: it is
 /// compiled twice, for machines with AVX2 and for any, and the machine chooses. The same bits either way, as
 /// products are not contracted into fused multiply-adds (fovea_floating_point in cmake/FoveaTargets.cmake).
@@ -10,3 +14,15 @@
 #else
 #define FOVEA_WIDE
 #endif
+
+namespace fovea {
+
+/// Numbers that such functions work on together: loops of fixed length become vector instructions.
+constexpr std::size_t kWide = 16;
+template <class T>
+struct alignas(64) WideArray : std::array<T, kWide> {};
+using WideFloats = WideArray<float>;
+using WideInts = WideArray<std::int32_t>;
+using WideWords = WideArray<std::uint32_t>;
+
+}  // namespace fovea

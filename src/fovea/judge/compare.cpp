@@ -138,7 +138,7 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
   std::vector<RenderScene> test_scenes;
   for (const Model* test : tests)
     test_scenes.push_back(make_render_scene(*test, pose_of(*test, options.pose), context, &scene));
-  const std::vector<View> views = views_of(options.views, reference, pose, scene);
+  const std::vector<View> views = views_of(options.views, reference, pose, scene.sphere);
 
   std::vector<Comparison> result(tests.size());
   for (Comparison& comparison : result) comparison.views.resize(views.size());

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "fovea/base/wide.h"
 #include "fovea/model/material.h"
 #include "fovea/render/mip_map.h"
 
@@ -28,18 +27,16 @@ class DisplayTexture {
   /// Texels of the image, all of them.
   float full_width() const { return full_width_; }
   float full_height() const { return full_height_; }
-  /// Mixes the four texels around `uv` (0 … 1, v down), which wraps as the sampler says; coordinates that are
-  /// no numbers are 0.
+  /// Mixes the four texels around (u, v) (0 … 1, v down), which wraps as the sampler says; coordinates that
+  /// are no numbers are 0.
+  void at(std::size_t level, const WideFloats& u, const WideFloats& v, WideWords& out) const;
   PackedColor at(std::size_t level, Vec2f uv) const {
-    const Level& l = levels_[level];
-    const Pair x = pair(uv.x, l.width, wrap_u_), y = pair(uv.y, l.height, wrap_v_);
-    const PackedColor* const texels = texels_.data() + l.first;
-    const auto row = [&](int r) {
-      const PackedColor* const row_texels =
-          texels + static_cast<std::size_t>(r) * static_cast<std::size_t>(l.width);
-      return mixed(row_texels[x.first], row_texels[x.second], x.share);
-    };
-    return mixed(row(y.first), row(y.second), y.share);
+    WideFloats u{}, v{};
+    WideWords out;
+    u[0] = uv.x;
+    v[0] = uv.y;
+    at(level, u, v, out);
+    return out[0];
   }
 
  private:
@@ -47,39 +44,6 @@ class DisplayTexture {
     int width = 0, height = 0;
     std::size_t first = 0;
   };
-  /// Two neighbouring texels and how much the second counts, of 256.
-  struct Pair {
-    int first, second;
-    std::uint32_t share;
-  };
-  /// To 0 … 1.
-  static float wrapped(float x, Wrap wrap) {
-    if (!(std::abs(x) < 1e6f)) return 0;  // nor what is no number
-    if (wrap == Wrap::mirror) x *= 0.5f;
-    if (wrap != Wrap::clamp) {
-      x -= static_cast<float>(static_cast<int>(x));
-      if (x < 0) x += 1;
-      if (wrap == Wrap::mirror) x = x > 0.5f ? 2 - 2 * x : 2 * x;
-    }
-    return std::clamp(x, 0.0f, 1.0f);
-  }
-  static Pair pair(float x, int count, Wrap wrap) {
-    const int at = static_cast<int>(wrapped(x, wrap) * static_cast<float>(count) * 256.0f) - 128;
-    const int below = at >> 8, last = count - 1;
-    const auto share = static_cast<std::uint32_t>(at & 255);
-    if (below < 0) return {wrap == Wrap::repeat ? last : 0, 0, share};
-    if (below >= last) return {last, wrap == Wrap::repeat ? 0 : last, share};
-    return {below, below + 1, share};
-  }
-  /// Mixes two channels at a time.
-  static PackedColor mixed(PackedColor a, PackedColor b, std::uint32_t share) {
-    constexpr PackedColor kEven = 0x00FF00FF;
-    const std::uint32_t rest = 256 - share;
-    const PackedColor even = ((a & kEven) * rest + (b & kEven) * share) >> 8;
-    const PackedColor odd = ((a >> 8) & kEven) * rest + ((b >> 8) & kEven) * share;
-    return (even & kEven) | (odd & ~kEven);
-  }
-
   std::vector<Level> levels_;
   std::vector<PackedColor> texels_;
   Wrap wrap_u_ = Wrap::repeat, wrap_v_ = Wrap::repeat;

@@ -3,7 +3,8 @@
 namespace fovea {
 
 std::size_t FragmentLists::bytes() const {
-  std::size_t sum = pool_.capacity() * sizeof(Fragment) + pixels_.size() * sizeof(List);
+  std::size_t sum =
+      pool_.capacity() * sizeof(Fragment) + pixels_.size() * (sizeof(List) + sizeof(FrontPixel));
   for (const auto& rooms : free_) sum += rooms.capacity() * sizeof(rooms[0]);
   return sum;
 }
@@ -31,22 +32,32 @@ void FragmentLists::resize(List& list, std::uint32_t size) {
   list.size = size;
 }
 
-void FragmentLists::add(List& list, const Fragment& fragment) {
+void FragmentLists::add(std::size_t pixel, const Fragment& fragment) {
+  List& list = pixels_[pixel];
   std::uint32_t at = list.size;
   resize(list, list.size + 1);
   Fragment* const fragments = pool_.data() + list.begin;
   for (; at > 0 && fragment.is_before(fragments[at - 1]); --at) fragments[at] = fragments[at - 1];
   fragments[at] = fragment;
+  if (at < 2) set_front(pixel);
   ++size_;
 }
 
-void FragmentLists::drop(List& list, std::uint32_t triangle) {
+void FragmentLists::set_front(std::size_t pixel) {
+  const std::span<const Fragment> list = at(pixel);
+  fronts_[pixel].first = !list.empty() ? list[0] : background_;
+  fronts_[pixel].second = list.size() > 1 ? list[1] : background_;
+}
+
+void FragmentLists::drop(std::size_t pixel, std::uint32_t triangle) {
+  List& list = pixels_[pixel];
   Fragment* const fragments = pool_.data() + list.begin;
   std::uint32_t at = 0;
   while (at < list.size && fragments[at].triangle != triangle) ++at;
   if (at == list.size) return;  // a hole
   std::copy(fragments + at + 1, fragments + list.size, fragments + at);
   resize(list, list.size - 1);
+  if (at < 2) set_front(pixel);
   --size_;
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,19 +27,29 @@ struct Fragment {
   friend bool operator==(const Fragment&, const Fragment&) = default;
 };
 
+/// What most looks at a pixel need, in half a cache line.
+struct alignas(32) FrontPixel {
+  Fragment first, second;                ///< The nearest; the background where there are fewer.
+  std::array<std::uint32_t, 2> notes{};  ///< The caller's own.
+};
+
 /// All triangles behind each pixel of a view, nearest first, hidden ones among them: what is visible after a
 /// triangle goes is the next in the list, and nothing has to be drawn again.
 ///
 /// The lists depend on the triangles that are in them, not on the order in which they came. A fragment takes
-/// 12 bytes, a pixel 8; lists lie in one pool in rooms of powers of two, so that a list takes at most twice
+/// 12 bytes, a pixel 40; lists lie in one pool in rooms of powers of two, so that a list takes at most twice
 /// what its fragments need. Rooms that lists have outgrown wait for others: all together takes about two to
 /// four times, at most nine times what the lists need when each is at its longest.
 class FragmentLists {
  public:
-  FragmentLists(int width, int height)
+  /// `background` is the value where there is no triangle.
+  FragmentLists(int width, int height, std::uint32_t background = 0)
       : width_(width),
         height_(height),
-        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+        background_{-std::numeric_limits<float>::infinity(), kInvalid, background},
+        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
+        fronts_(pixels_.size(), {background_, background_, {}}),
+        row_(static_cast<std::size_t>(width)) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -51,43 +62,49 @@ class FragmentLists {
   std::span<const Fragment> at(std::size_t pixel) const {
     return {pool_.data() + pixels_[pixel].begin, pixels_[pixel].size};
   }
+  /// The nearest of them; the background is infinitely far and without a triangle.
+  const FrontPixel& front(std::size_t pixel) const { return fronts_[pixel]; }
+  std::array<std::uint32_t, 2>& notes(std::size_t pixel) { return fronts_[pixel].notes; }
+  const Fragment& background() const { return background_; }
   /// How many fragments there are in all.
   std::size_t size() const { return size_; }
   std::size_t bytes() const;
 
-  /// Adds a triangle, which is not there yet. `value(x, y, out)` says what it shows at a pixel; if it returns
-  /// false it has a hole there. Calls `changed(pixel, before, after)` where it is in front of all others,
-  /// with what was there (null: nothing) and what is. O(pixels · depth).
-  template <class Value, class Changed>
-  void insert(std::uint32_t triangle, const std::array<ScreenVertex, 3>& v, Value&& value,
+  /// A value that stands for a hole.
+  static constexpr std::uint32_t kHole = 0;
+
+  /// Adds a triangle, which is not there yet. `values(y, x0, x1, out)` says what it shows at the pixels
+  /// [x0, x1) of a row. Calls `changed(pixel, before, after)` where it is in front of all others, with what
+  /// was there and what is. O(pixels · depth).
+  template <class Values, class Changed>
+  void insert(std::uint32_t triangle, const std::array<ScreenVertex, 3>& v, Values&& values,
               Changed&& changed) {
     for_spans(v, rect(), [&](int y, int x0, int x1, const NearnessPlane& plane) {
+      values(y, x0, x1, row_.data());
       plane.for_row(y, x0, x1, [&](int x, float nearness) {
-        Fragment fragment{nearness, triangle, 0};
-        if (!value(x, y, fragment.value)) return;
+        const Fragment fragment{nearness, triangle, row_[static_cast<std::size_t>(x - x0)]};
+        if (fragment.value == kHole) return;
         const std::size_t p = pixel(x, y);
-        add(pixels_[p], fragment);
-        const std::span<const Fragment> list = at(p);
-        if (list[0].triangle == triangle) changed(p, list.size() > 1 ? &list[1] : nullptr, &list[0]);
+        const Fragment before = fronts_[p].first;
+        add(p, fragment);
+        if (fronts_[p].first.triangle == triangle) changed(p, before, fragment);
       });
     });
   }
-  template <class Value>
-  void insert(std::uint32_t triangle, const std::array<ScreenVertex, 3>& v, Value&& value) {
-    insert(triangle, v, value, [](auto&&...) {});
+  template <class Values>
+  void insert(std::uint32_t triangle, const std::array<ScreenVertex, 3>& v, Values&& values) {
+    insert(triangle, v, values, [](auto&&...) {});
   }
   /// Takes a triangle out; it must be where it was put in. Calls `changed(pixel, before, after)` where it was
-  /// in front of all others.
+  /// in front of all others, with what was there and what is.
   template <class Changed>
   void remove(std::uint32_t triangle, const std::array<ScreenVertex, 3>& v, Changed&& changed) {
     for_spans(v, rect(), [&](int y, int x0, int x1, const NearnessPlane&) {
       for (int x = x0; x < x1; ++x) {
         const std::size_t p = pixel(x, y);
-        const std::span<const Fragment> list = at(p);
-        if (list.empty()) continue;  // a hole
-        const Fragment front = list[0];
-        drop(pixels_[p], triangle);
-        if (front.triangle == triangle) changed(p, &front, at(p).empty() ? nullptr : &at(p)[0]);
+        const Fragment front = fronts_[p].first;
+        drop(p, triangle);
+        if (front.triangle == triangle) changed(p, front, fronts_[p].first);
       }
     });
   }
@@ -104,13 +121,17 @@ class FragmentLists {
     return static_cast<std::size_t>(std::countr_zero(std::bit_ceil(size)));
   }
 
-  void add(List& list, const Fragment& fragment);
-  void drop(List& list, std::uint32_t triangle);
+  void add(std::size_t pixel, const Fragment& fragment);
+  void drop(std::size_t pixel, std::uint32_t triangle);
+  void set_front(std::size_t pixel);
   void resize(List& list, std::uint32_t size);
 
   int width_, height_;
   std::size_t size_ = 0;
+  Fragment background_;
   std::vector<List> pixels_;
+  std::vector<FrontPixel> fronts_;  // [#pixels], the first of each list once more
+  std::vector<std::uint32_t> row_;  // scratch of insert
   std::vector<Fragment> pool_;
   std::array<std::vector<std::uint32_t>, 32> free_;  // [log2 of room], where rooms begin
 };

@@ -224,8 +224,8 @@ std::vector<View> camera_views(const Model& model, const Pose& pose) {
 }
 
 std::vector<View> views_of(const ViewOptions& options, const Model& model, const Pose& pose,
-                           const RenderScene& scene) {
-  if (options.set != ViewSet::cameras) return make_views(options, scene.sphere);
+                           const Sphere& sphere) {
+  if (options.set != ViewSet::cameras) return make_views(options, sphere);
   std::vector<View> views = camera_views(model, pose);
   if (views.empty())
     throw Error(ErrorKind::usage, "the model has no cameras", {}, "choose another set with --views");

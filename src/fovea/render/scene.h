@@ -84,10 +84,10 @@ RenderScene make_render_scene(const TriMesh& mesh);
 /// What the model's own cameras see, node by node; their aspect ratio gives way to the picture's.
 std::vector<View> camera_views(const Model& model, const Pose& pose);
 
-/// The views of a set onto a model in a pose; around its scene's sphere, unless they are its own cameras.
+/// The views of a set onto a model in a pose; around the sphere, unless they are its own cameras.
 /// Throws Error(usage) if these are asked for and there are none.
 std::vector<View> views_of(const ViewOptions& options, const Model& model, const Pose& pose,
-                           const RenderScene& scene);
+                           const Sphere& sphere);
 
 /// Where a triangle of the scene comes from.
 struct TriangleOrigin {

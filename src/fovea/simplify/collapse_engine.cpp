@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,7 +49,7 @@ struct Due {
 class Engine {
  public:
   Engine(CollapseState& state, std::uint64_t target, double max_error, const SimplifyOptions& options,
-         ViewMetric* views, Context& context)
+         ViewMetric* views, Context& context, CollapseOutcome& outcome)
       : state_(state),
         mesh_(state.mesh),
         target_(target),
@@ -64,18 +63,18 @@ class Engine {
         cost_(state, options.placement),
         legality_(state),
         merge_(state, options.placement),
-        stepper_(state, cost_, legality_, merge_, queue_, views, outcome_.record) {
+        outcome_(outcome),
+        stepper_(state, cost_, legality_, merge_, queue_, views, outcome.record, outcome.error) {
     if (views_ == nullptr) return;
     for (int i = 0; i < context.thread_count(); ++i) memory_.push_back(views_->make_memory(state));
   }
 
-  CollapseOutcome run() {
+  void run() {
     fill_queue();
     reserve_record();
     outcome_.stop = loop();
     outcome_.error = stepper_.error();
     if (outcome_.stop == StopReason::stuck) count_blocked();
-    return std::move(outcome_);
   }
 
  private:
@@ -118,7 +117,7 @@ class Engine {
   ValueMerge merge_;
   std::vector<Due> batch_;
   std::vector<std::uint32_t> changed_;  // vertices merged since the batch was priced
-  CollapseOutcome outcome_;
+  CollapseOutcome& outcome_;
   CollapseStepper stepper_;
   bool over_error_ = false;
   std::vector<std::uint32_t> ring_;  // scratch
@@ -126,8 +125,10 @@ class Engine {
 
 void Engine::fill_queue() {
   if (views_ != nullptr) {
-    std::vector<std::uint32_t> all(edge_count_);
-    std::iota(all.begin(), all.end(), 0u);
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t e = 0; e < edge_count_; ++e) {
+      if (mesh_.edge_alive(e)) all.push_back(e);
+    }
     constexpr std::size_t kStep = 1 << 12;
     for (std::size_t begin = 0; begin < all.size(); begin += kStep) {
       price_by_views(std::span(all).subspan(begin, std::min(kStep, all.size() - begin)));
@@ -141,10 +142,11 @@ void Engine::fill_queue() {
 }
 
 void Engine::price_edges() {
-  std::vector<float> cost(edge_count_);
+  std::vector<float> cost(edge_count_, std::numeric_limits<float>::infinity());
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const auto edge = static_cast<std::uint32_t>(e);
+      if (!mesh_.edge_alive(edge)) continue;
       cost[e] = static_cast<float>(cost_.best_place(edge, cost_.quadric(edge)).cost);
     }
   });
@@ -203,10 +205,11 @@ void Engine::price_by_views(std::span<const std::uint32_t> edges) {
 /// Room for the steps to the target, if there is one: most take two triangles.
 void Engine::reserve_record() {
   const std::uint64_t faces = mesh_.live_faces > target_ ? mesh_.live_faces - target_ : 0;
-  outcome_.record.triangles_before = mesh_.live_faces;
+  CollapseRecord& record = outcome_.record;
+  if (record.steps.empty()) record.triangles_before = mesh_.live_faces;
   if (target_ == 0) return;
-  outcome_.record.removed_faces.reserve(faces + 1);
-  outcome_.record.steps.reserve(faces / 2 + faces / 32);
+  record.removed_faces.reserve(record.removed_faces.size() + faces + 1);
+  record.steps.reserve(record.steps.size() + faces / 2 + faces / 32);
 }
 
 // --- The loop --------------------------------------------------------------------------------------
@@ -463,9 +466,9 @@ void Engine::count_blocked() {
 
 }  // namespace
 
-CollapseOutcome collapse(CollapseState& state, std::uint64_t target_triangles, double max_error,
-                         const SimplifyOptions& options, ViewMetric* views, Context& context) {
-  return Engine(state, target_triangles, max_error, options, views, context).run();
+void collapse(CollapseState& state, std::uint64_t target_triangles, double max_error,
+              const SimplifyOptions& options, ViewMetric* views, Context& context, CollapseOutcome& outcome) {
+  Engine(state, target_triangles, max_error, options, views, context, outcome).run();
 }
 
 }  // namespace fovea

@@ -39,11 +39,13 @@ struct CollapseOutcome {
 /// `keep_topology`: a model of many handles and parts still reaches its target, late. So is one that leaves
 /// next to nothing of a thin part.
 ///
-/// `state` is used up. Stops at `target_triangles`, or when every collapse left exceeds `max_error`
-/// (units of the scene's diagonal). Sequential, O(#steps · one-ring); the initial costs are parallel.
+/// Stops at `target_triangles`, or when every collapse left exceeds `max_error` (units of the scene's
+/// diagonal). Sequential, O(#steps · one-ring); the initial costs are parallel. `state` is what is left, and
+/// may be collapsed further: `outcome` goes on from what came before.
 ///
-/// With `views` edges are priced by what these lose; else by the quadric error.
-CollapseOutcome collapse(CollapseState& state, std::uint64_t target_triangles, double max_error,
-                         const SimplifyOptions& options, ViewMetric* views, Context& context);
+/// With `views`, which have looked at `state`, edges are priced by what these lose; else by the quadric
+/// error.
+void collapse(CollapseState& state, std::uint64_t target_triangles, double max_error,
+              const SimplifyOptions& options, ViewMetric* views, Context& context, CollapseOutcome& outcome);
 
 }  // namespace fovea

@@ -43,9 +43,10 @@ struct FaceFrame {
 class Builder {
  public:
   Builder(std::span<const TriMesh* const> meshes, std::span<const double> scales,
-          std::span<const VertexField* const> importance, double diagonal, const SimplifyOptions& options,
-          const Context& context)
-      : meshes_(meshes), importance_(importance), options_(options), context_(context) {
+          std::span<const VertexField* const> importance,
+          std::span<const std::vector<FaceId>* const> left_out, double diagonal,
+          const SimplifyOptions& options, const Context& context)
+      : meshes_(meshes), importance_(importance), left_out_(left_out), options_(options), context_(context) {
     place_meshes(scales, diagonal);
   }
 
@@ -89,6 +90,10 @@ class Builder {
   bool is_seam(std::uint32_t corner_a, std::uint32_t corner_b) const;
   void price_components();
 
+  std::span<const FaceId> left_out(std::size_t m) const {
+    return left_out_.empty() ? std::span<const FaceId>{} : std::span<const FaceId>(*left_out_[m]);
+  }
+  std::size_t face_count(std::size_t m) const { return meshes_[m]->face_count() - left_out(m).size(); }
   double weight_of(std::uint32_t v) const { return importance_weight_.empty() ? 1.0 : importance_weight_[v]; }
   ChannelKind kind_of(Semantic semantic) const;
   double option_weight(const Channel& channel) const;
@@ -96,6 +101,7 @@ class Builder {
 
   std::span<const TriMesh* const> meshes_;
   std::span<const VertexField* const> importance_;
+  std::span<const std::vector<FaceId>* const> left_out_;
   const SimplifyOptions& options_;
   const Context& context_;
   CollapseState state_;
@@ -114,7 +120,7 @@ void Builder::place_meshes(std::span<const double> scales, double diagonal) {
     slot.scale = scales[m] / diagonal;
     state_.slots.push_back(slot);
     vertices += meshes_[m]->vertex_count();
-    faces += meshes_[m]->face_count();
+    faces += face_count(m);
   }
   state_.mesh.vertices.reserve(vertices);
   state_.mesh.faces.reserve(faces);
@@ -133,11 +139,12 @@ void Builder::make_connectivity() {
       all.vertices.emplace_back().position = Vec3f(slot.to_engine(meshes_[m]->positions[v.index()]));
     }
     for (const FaceId f : order.faces) {
+      if (std::binary_search(left_out(m).begin(), left_out(m).end(), f)) continue;
       const auto& t = meshes_[m]->triangles[f.index()];
       all.faces.push_back({{vertex_of[t[0].index()], vertex_of[t[1].index()], vertex_of[t[2].index()]}, {}});
+      state_.mesh_face.push_back(f);
     }
     state_.mesh_vertex.insert(state_.mesh_vertex.end(), order.vertices.begin(), order.vertices.end());
-    state_.mesh_face.insert(state_.mesh_face.end(), order.faces.begin(), order.faces.end());
   }
   all.link();
 }
@@ -282,7 +289,7 @@ void Builder::number_values(Channel& channel, std::size_t m, const AttributeLaye
   std::vector<std::uint32_t> number(layer.size(), kInvalid);
   const std::size_t first_face = state_.slots[m].first_face;
   channel.layer_value.reserve(channel.layer_value.size() + layer.size());
-  for (std::size_t f = first_face; f < first_face + meshes_[m]->face_count(); ++f) {
+  for (std::size_t f = first_face; f < first_face + face_count(m); ++f) {
     for (int k = 0; k < 3; ++k) {
       const ValueId id = layer.corner_value[corner(state_.mesh_face[f], k).index()];
       if (!id.valid()) continue;
@@ -315,7 +322,7 @@ void Builder::add_morph_channel(std::size_t m) {
       *out++ = morph[id.index()].z;
     }
   }
-  for (std::size_t c = 3 * std::size_t{slot.first_face}; c < 3 * (slot.first_face + mesh.face_count()); ++c) {
+  for (std::size_t c = 3 * std::size_t{slot.first_face}; c < 3 * (slot.first_face + face_count(m)); ++c) {
     const std::uint32_t v = state_.mesh.vertex(static_cast<std::uint32_t>(c));
     channel.corner_value[c] = static_cast<std::uint32_t>(first) + v - slot.first_vertex;
   }
@@ -381,7 +388,7 @@ void Builder::scale_channel(Channel& channel) const {
       length = kColorLength;
     } else if (channel.is_uv()) {
       double area = 0, area_uv = 0;
-      for (std::size_t i = 0; i < meshes_[m]->face_count(); ++i) {
+      for (std::size_t i = 0; i < face_count(m); ++i) {
         const std::size_t f = state_.slots[m].first_face + i;
         if (channel.corner_value[3 * f] == kInvalid) continue;
         const auto uv = [&](std::size_t k) {
@@ -414,7 +421,7 @@ void Builder::add_face_quadrics() {
                  std::vector<double> scratch;
                  std::uint32_t f = 0;
                  for (std::uint32_t m = 0; m < meshes_.size(); ++m) {
-                   for (std::size_t k = 0; k < meshes_[m]->face_count(); ++k, ++f) {
+                   for (std::size_t k = 0; k < face_count(m); ++k, ++f) {
                      const auto& t = mesh.faces[f].vertex;
                      const auto inside = [&](std::uint32_t v) { return v >= begin && v < end; };
                      if (inside(t[0]) || inside(t[1]) || inside(t[2])) add_face(f, m, begin, end, scratch);
@@ -568,9 +575,10 @@ std::uint32_t CollapseState::find_slot(std::uint32_t item, std::uint32_t MeshSlo
 }
 
 CollapseState make_collapse_state(std::span<const TriMesh* const> meshes, std::span<const double> scales,
-                                  std::span<const VertexField* const> importance, double diagonal,
+                                  std::span<const VertexField* const> importance,
+                                  std::span<const std::vector<FaceId>* const> left_out, double diagonal,
                                   const SimplifyOptions& options, const Context& context) {
-  return Builder(meshes, scales, importance, diagonal, options, context).run();
+  return Builder(meshes, scales, importance, left_out, diagonal, options, context).run();
 }
 
 }  // namespace fovea

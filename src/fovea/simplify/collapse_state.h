@@ -118,10 +118,12 @@ struct CollapseState {
   std::uint32_t find_slot(std::uint32_t item, std::uint32_t MeshSlot::*first) const;
 };
 
-/// Lays out `meshes` (with their scales in scene units and importance fields, which may be empty) and
-/// computes the initial quadrics. `diagonal` is the scene's. O(#F · #layers), parallel.
+/// Lays out `meshes` (with their scales in scene units, importance fields, which may be empty, and sorted
+/// lists of faces that are left out, if there are any) and computes the initial quadrics. `diagonal` is the
+/// scene's. O(#F · #layers), parallel.
 CollapseState make_collapse_state(std::span<const TriMesh* const> meshes, std::span<const double> scales,
-                                  std::span<const VertexField* const> importance, double diagonal,
+                                  std::span<const VertexField* const> importance,
+                                  std::span<const std::vector<FaceId>* const> left_out, double diagonal,
                                   const SimplifyOptions& options, const Context& context);
 
 }  // namespace fovea

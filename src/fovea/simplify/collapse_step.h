@@ -17,11 +17,11 @@ class ViewMetric;
 
 /// Carries out what the collapse engine has decided: rewires triangles, merges quadrics and values, tells
 /// `cost`, `views` (if any) and the queue, which edges that are gone leave, and writes the record. All that
-/// it is made of must outlive it.
+/// it is made of must outlive it. `error` is the largest of the steps that the record has already.
 class CollapseStepper {
  public:
   CollapseStepper(CollapseState& state, EdgeCost& cost, const Legality& legality, ValueMerge& merge,
-                  CollapseQueue& queue, ViewMetric* views, CollapseRecord& record)
+                  CollapseQueue& queue, ViewMetric* views, CollapseRecord& record, double error)
       : state_(state),
         mesh_(state.mesh),
         cost_(cost),
@@ -29,7 +29,8 @@ class CollapseStepper {
         merge_(merge),
         queue_(queue),
         views_(views),
-        record_(record) {}
+        record_(record),
+        error_(error) {}
 
   /// Collapses edge e to p, as `merge` has planned it and `legality` looked at it. Returns the vertex that is
   /// left. O(one-rings).
@@ -57,7 +58,7 @@ class CollapseStepper {
   CollapseQueue& queue_;
   ViewMetric* const views_;
   CollapseRecord& record_;
-  double error_ = 0;
+  double error_;
 
   /// A corner of a face that was dropped, at a vertex of several values.
   struct DroppedCorner {

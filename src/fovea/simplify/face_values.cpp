@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fovea/base/srgb.h"
+#include "fovea/render/fragment_lists.h"
 
 namespace fovea {
 
@@ -23,17 +24,50 @@ int find_channel(const CollapseState& state, Semantic semantic, int set) {
   return -1;
 }
 
-std::uint32_t byte(PackedColor color, int channel) { return color >> (8 * channel) & 255; }
+using Plane = CornerPlanes::Plane;
 
-/// From amounts of light to display values and back, nearly: light is the square.
-Float4 root(Float4 x) { return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), 0}; }
+/// A number of a plane at pixels, in the order of operations that planes have.
+FOVEA_WIDE void plane_at(const Plane& plane, int number, const WideFloats& __restrict x,
+                         const WideFloats& __restrict y, WideFloats& __restrict out) {
+  const float at_0 = plane.at_0[number], dx = plane.dx[number], dy = plane.dy[number];
+  for (std::size_t i = 0; i < kWide; ++i) out[i] = at_0 + dx * x[i] + dy * y[i];
+}
 
-PackedColor rounded(Float4 display) {
-  const auto whole = [&](int k) {
-    const float x = display[k] + 0.5f;
-    return static_cast<PackedColor>(x < 255 ? (x > 0 ? x : 0) : 255);
-  };
-  return whole(0) | whole(1) << 8 | whole(2) << 16;
+FOVEA_WIDE void scale(const WideFloats& __restrict by, WideFloats& __restrict numbers) {
+  for (std::size_t i = 0; i < kWide; ++i) numbers[i] *= by[i];
+}
+
+FOVEA_WIDE void invert(WideFloats& __restrict numbers) {
+  for (float& x : numbers) x = 1 / x;
+}
+
+/// A channel of colours, as numbers.
+FOVEA_WIDE void unpack(const WideWords& __restrict colors, int channel, WideFloats& __restrict out) {
+  for (std::size_t i = 0; i < kWide; ++i)
+    out[i] = static_cast<float>(static_cast<std::int32_t>(colors[i] >> (8 * channel) & 255));
+}
+
+/// Display values under light, nearly: the amount of light is the square.
+FOVEA_WIDE void light_channel(const WideFloats& __restrict tinted, const WideFloats& __restrict white,
+                              WideFloats& __restrict display) {
+  for (std::size_t i = 0; i < kWide; ++i)
+    display[i] = std::sqrt(display[i] * display[i] * tinted[i] + white[i] * (255.0f * 255.0f));
+}
+
+/// Rounds a channel and puts it into colours; what is no number is full.
+FOVEA_WIDE void pack(const WideFloats& __restrict display, int channel, WideWords& __restrict colors) {
+  for (std::size_t i = 0; i < kWide; ++i) {
+    const float x = display[i] + 0.5f;
+    const auto whole = static_cast<std::int32_t>(x < 255 ? (x > 0 ? x : 0.0f) : 255.0f);
+    colors[i] |= static_cast<std::uint32_t>(whole) << (8 * channel);
+  }
+}
+
+/// Colours are opaque from here on, or holes.
+FOVEA_WIDE void cut(const WideWords& __restrict alpha_of, std::uint32_t cutoff,
+                    WideWords& __restrict colors) {
+  for (std::size_t i = 0; i < kWide; ++i)
+    colors[i] = (alpha_of[i] >> 24) < cutoff ? FragmentLists::kHole : colors[i] | 0xFF000000;
 }
 
 }  // namespace
@@ -225,36 +259,94 @@ FaceValues::Shading::Shading(const FaceValues& values, const FaceLook& look,
   level_ = look.texture->level_for(look.texel_area / pixels);
 }
 
-bool FaceValues::Shading::at(int x, int y, std::uint32_t& value) const {
+/// Where a face is looked at.
+struct FaceValues::Shading::Samples {
+  WideFloats x, y;
+  WideFloats over_w;  ///< Numbers of planes times this are those of the surface.
+};
+
+void FaceValues::Shading::row(int y, int x0, int x1, std::uint32_t* out) const {
+  std::array<Pixel, 64> pixels;
+  for (int begin = x0; begin < x1; begin += 64) {
+    const int count = std::min(64, x1 - begin);
+    for (int i = 0; i < count; ++i)
+      pixels[static_cast<std::size_t>(i)] = {static_cast<std::uint16_t>(begin + i),
+                                             static_cast<std::uint16_t>(y)};
+    at(std::span(pixels).first(static_cast<std::size_t>(count)), out + (begin - x0));
+  }
+}
+
+void FaceValues::Shading::at(std::span<const Pixel> pixels, std::uint32_t* out) const {
   if (values_.content_ == PixelContent::face) {
-    value = look_.number;
-    return true;
+    std::fill_n(out, pixels.size(), look_.number);
+    return;
   }
-  const Float4 normal = normal_(x, y);
-  const float inverse = 1 / normal[3];
-  PackedColor color = look_.color;
-  if (look_.texture != nullptr) {
-    const Float4 uv = uv_(x, y) * inverse;
-    color = look_.texture->at(level_, {uv[0], uv[1]});
-  }
-  if (byte(color, 3) < cutoff_) return false;
-  if (look_.regions != nullptr) {
-    const Float4 uv = region_uv_(x, y) * inverse;
-    value = look_.regions->region_at(look_.face, {uv[0], uv[1]});
-    return true;
-  }
-  if (look_.is_tinted || light_ != nullptr) {
-    Float4 shade = {static_cast<float>(byte(color, 0)), static_cast<float>(byte(color, 1)),
-                    static_cast<float>(byte(color, 2)), 0};
-    if (look_.is_tinted) shade *= tint_(x, y) * inverse;
-    if (light_ != nullptr && (normal[0] != 0 || normal[1] != 0 || normal[2] != 0)) {
-      const LightTable::Light light = light_->at({normal[0], normal[1], normal[2]});
-      shade = root(shade * shade * light.tinted + light.white * (255.0f * 255.0f));
+  Samples samples;
+  WideWords shown;
+  for (std::size_t begin = 0; begin < pixels.size(); begin += kWide) {
+    const std::size_t count = std::min(kWide, pixels.size() - begin);
+    for (std::size_t i = 0; i < kWide; ++i) {  // the last pixel fills up
+      const Pixel& pixel = pixels[begin + std::min(i, count - 1)];
+      samples.x[i] = pixel.x;
+      samples.y[i] = pixel.y;
     }
-    color = rounded(shade);
+    plane_at(normal_, 3, samples.x, samples.y, samples.over_w);
+    invert(samples.over_w);
+    shade(samples, shown);
+    std::copy_n(shown.begin(), count, out + begin);
   }
-  value = color | 0xFF000000;
-  return true;
+}
+
+void FaceValues::Shading::shade(const Samples& at, WideWords& out) const {
+  const auto on_surface = [&](const Plane& plane, int number, WideFloats& numbers) {
+    plane_at(plane, number, at.x, at.y, numbers);
+    scale(at.over_w, numbers);
+  };
+  WideWords color;
+  color.fill(look_.color);
+  WideFloats u, v;
+  if (look_.texture != nullptr) {
+    on_surface(uv_, 0, u);
+    on_surface(uv_, 1, v);
+    look_.texture->at(level_, u, v, color);
+  }
+  const WideWords alpha = color;
+  if (look_.regions != nullptr) {
+    on_surface(region_uv_, 0, u);
+    on_surface(region_uv_, 1, v);
+    for (std::size_t i = 0; i < kWide; ++i)
+      out[i] = alpha[i] >> 24 < cutoff_ ? FragmentLists::kHole
+                                        : look_.regions->region_at(look_.face, {u[i], v[i]});
+    return;
+  }
+  if (look_.is_tinted || light_ != nullptr) light_up(at, color);
+  cut(alpha, cutoff_, color);
+  out = color;
+}
+
+/// Vertex colours and light on base colour.
+void FaceValues::Shading::light_up(const Samples& at, WideWords& color) const {
+  WideFloats tinted, white;
+  if (light_ != nullptr) {
+    WideFloats nx, ny, nz;
+    plane_at(normal_, 0, at.x, at.y, nx);
+    plane_at(normal_, 1, at.x, at.y, ny);
+    plane_at(normal_, 2, at.x, at.y, nz);
+    light_->at(nx, ny, nz, tinted, white);
+  }
+  const WideWords base = color;
+  color.fill(0);
+  for (int channel = 0; channel < 3; ++channel) {
+    WideFloats display, tint;
+    unpack(base, channel, display);
+    if (look_.is_tinted) {
+      plane_at(tint_, channel, at.x, at.y, tint);
+      scale(at.over_w, tint);
+      scale(tint, display);
+    }
+    if (light_ != nullptr) light_channel(tinted, white, display);
+    pack(display, channel, color);
+  }
 }
 
 }  // namespace fovea

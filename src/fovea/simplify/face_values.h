@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/base/wide.h"
 #include "fovea/render/corner_planes.h"
 #include "fovea/render/display_texture.h"
 #include "fovea/render/light_table.h"
@@ -67,15 +68,26 @@ class FaceValues {
   /// Face f as it is, or as a planned collapse leaves it.
   FaceLook look(const Showing& showing, std::uint32_t f, const PlannedCollapse* planned = nullptr) const;
 
-  /// A face in a view, ready to be looked at pixel by pixel.
+  /// A pixel of a view.
+  struct Pixel {
+    std::uint16_t x, y;
+  };
+
+  /// A face in a view, ready to be looked at.
   class Shading {
    public:
     Shading(const FaceValues& values, const FaceLook& look, const std::array<ScreenVertex, 3>& v,
             std::size_t view, bool mirrored);
-    /// What pixel (x, y) shows; false if there is a hole.
-    bool at(int x, int y, std::uint32_t& value) const;
+    /// What pixels show, FragmentLists::kHole where there is a hole. `out` [#pixels].
+    void at(std::span<const Pixel> pixels, std::uint32_t* out) const;
+    /// The same for the pixels [x0, x1) of a row.
+    void row(int y, int x0, int x1, std::uint32_t* out) const;
 
    private:
+    struct Samples;
+    void shade(const Samples& at, WideWords& out) const;
+    void light_up(const Samples& at, WideWords& color) const;
+
     const FaceValues& values_;
     const FaceLook& look_;
     CornerPlanes::Plane normal_;  // turned to the side that is seen; the last is 1

@@ -11,7 +11,10 @@
 #include <utility>
 
 #include "fovea/base/error.h"
+#include "fovea/render/hidden_faces.h"
 #include "fovea/simplify/collapse_engine.h"
+#include "fovea/simplify/metric_stage.h"
+#include "fovea/simplify/salient.h"
 #include "fovea/simplify/view_metric.h"
 
 namespace fovea {
@@ -73,25 +76,29 @@ struct Batch {
   std::vector<const TriMesh*> meshes;
   std::vector<double> scales;
   std::vector<const VertexField*> importance;
-  std::uint64_t triangles = 0;
+  std::vector<const std::vector<FaceId>*> hidden;  // empty if nothing is
+  std::uint64_t triangles = 0;                     // hidden ones among them
 
-  void add(const Model& model, std::size_t m, double scale, const Importance& fields) {
+  void add(const Model& model, std::size_t m, double scale, const Importance& fields,
+           const std::vector<std::vector<FaceId>>& without) {
     mesh_index.push_back(m);
     meshes.push_back(&model.meshes[m].surface);
     scales.push_back(scale);
     importance.push_back(fields.empty() ? nullptr : &fields[m]);
+    if (!without.empty()) hidden.push_back(&without[m]);
     triangles += model.meshes[m].surface.face_count();
   }
 };
 
 /// One batch for the scene, or one per mesh.
 std::vector<Batch> make_batches(const Model& model, const std::vector<double>& scales,
-                                const Importance& importance, bool per_mesh) {
+                                const Importance& importance, const std::vector<std::vector<FaceId>>& hidden,
+                                bool per_mesh) {
   std::vector<Batch> batches;
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     if (model.meshes[m].surface.face_count() == 0) continue;
     if (batches.empty() || per_mesh) batches.emplace_back();
-    batches.back().add(model, m, scales[m], importance);
+    batches.back().add(model, m, scales[m], importance, hidden);
   }
   return batches;
 }
@@ -117,6 +124,57 @@ double error_bound(const SimplifyOptions& options, double diagonal) {
   if (options.error) bound = std::min(bound, *options.error);
   if (options.error_abs) bound = std::min(bound, *options.error_abs / diagonal);
   return bound;
+}
+
+/// The hidden faces of each mesh. Throws Error(usage) if there is nothing else.
+std::vector<std::vector<FaceId>> hidden_of(const Model& model, const ViewOptions& views,
+                                           const Context& context) {
+  std::vector<std::vector<FaceId>> hidden = hidden_faces(model, views, context);
+  std::uint64_t faces = 0, hidden_count = 0;
+  for (std::size_t m = 0; m < hidden.size(); ++m) {
+    faces += model.meshes[m].surface.face_count();
+    hidden_count += hidden[m].size();
+  }
+  if (faces > 0 && hidden_count == faces) {
+    throw Error(ErrorKind::usage, "no view sees any triangle of the model", "--cull-hidden",
+                "look from elsewhere with --views");
+  }
+  return hidden;
+}
+
+/// Records that faces go before anything else does.
+void drop_hidden(const Batch& batch, CollapseRecord& record) {
+  record.triangles_before = batch.triangles;
+  for (std::size_t m = 0; m < batch.hidden.size(); ++m) {
+    if (batch.hidden[m]->empty()) continue;
+    record.removed_faces.insert(record.removed_faces.end(), batch.hidden[m]->begin(), batch.hidden[m]->end());
+    CollapseStep step;
+    step.kind = StepKind::vanish;
+    step.mesh = static_cast<std::uint32_t>(m);
+    step.faces_end = static_cast<std::uint32_t>(record.removed_faces.size());
+    record.steps.push_back(step);
+  }
+}
+
+/// Collapses a batch, by quadrics first and then by what views see, as the stage says.
+CollapseOutcome collapse_batch(const Model& model, const Batch& batch, std::uint64_t target,
+                               const MetricStage& stage, const SimplifyOptions& options, double diagonal,
+                               Context& context) {
+  CollapseState state = make_collapse_state(batch.meshes, batch.scales, batch.importance, batch.hidden,
+                                            diagonal, options, context);
+  const double bound = error_bound(options, diagonal);
+  CollapseOutcome outcome;
+  drop_hidden(batch, outcome.record);
+  if (!stage.is_by_views()) {
+    collapse(state, target, bound, options, nullptr, context, outcome);
+    return outcome;
+  }
+  ViewMetric views(state, model, batch.mesh_index, stage.metric, options, context);
+  if (stage.from < batch.triangles) collapse(state, stage.from, bound, options, nullptr, context, outcome);
+  if (outcome.stop != StopReason::target) return outcome;
+  views.look(batch.importance, context);
+  collapse(state, target, bound, options, &views, context, outcome);
+  return outcome;
 }
 
 /// A stop that says more than another wins when several meshes were simplified apart.
@@ -170,6 +228,18 @@ const char* to_string(StopReason reason) {
   return "target";
 }
 
+const char* to_string(Metric metric) {
+  switch (metric) {
+    case Metric::automatic: return "auto";
+    case Metric::quadric: return "quadric";
+    case Metric::visibility: return "visibility";
+    case Metric::entropy: return "entropy";
+    case Metric::polygon_entropy: return "polygon-entropy";
+    case Metric::image: return "image";
+  }
+  return "auto";
+}
+
 OptionList describe(SimplifyOptions& o) {
   const double infinity = std::numeric_limits<double>::infinity();
   OptionList list{
@@ -199,9 +269,19 @@ OptionList describe(SimplifyOptions& o) {
        "Never close holes or handles and never drop a component; targets may become unreachable.",
        &o.keep_topology, ""},
       {"metric",
-       "What a collapse costs: distance and attributes; or what a set of views loses, of the entropy of "
-       "texture regions or of triangles, or of the picture itself.",
-       choice(o.metric, {"quadric", "entropy", "polygon-entropy", "image"}), ""},
+       "What a collapse costs: distance and attributes (quadric), the same by how much is seen (visibility); "
+       "or what a set of views loses, of the entropy of texture regions or of triangles, or of the picture "
+       "itself (image). auto: quadric for the bulk, image for the last part, which measured best for its "
+       "time.",
+       choice(o.metric, {"auto", "quadric", "visibility", "entropy", "polygon-entropy", "image"}), ""},
+      {"metric-from",
+       "Collapse by quadrics until so many times the target are left, and by the metric from there on; 3 for "
+       "image, from the beginning for the entropies.",
+       &o.metric_from, "times the target", 1, infinity},
+      {"cull-hidden",
+       "First drop all triangles that none of the views sees; around the model many more views look than "
+       "--views says.",
+       &o.cull_hidden, ""},
       {"view-size", "Width and height of the views of a metric.", &o.view_size, "pixels", 16, 2048},
       {"image-pass", "What the metric image compares: base colour alone, or under light.",
        choice(o.image_pass, {"base-color", "lit"}), ""},
@@ -215,27 +295,28 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
                         Context& context) {
   const auto start = std::chrono::steady_clock::now();
   check_request(model, options, importance);
+  const Importance weights = options.metric == Metric::visibility
+                                 ? product(importance, exposed_importance(model, options, context))
+                                 : importance;
+  const auto hidden =
+      options.cull_hidden ? hidden_of(model, options.views, context) : std::vector<std::vector<FaceId>>{};
   const double diagonal = scene_diagonal(model);
-  const std::vector<Batch> batches = make_batches(model, mesh_scales(model), importance, options.per_mesh);
+  const std::vector<Batch> batches =
+      make_batches(model, mesh_scales(model), weights, hidden, options.per_mesh);
 
   SimplifyResult result;
   for (const Batch& batch : batches) result.triangles_before += batch.triangles;
+  for (const auto& faces : hidden) result.triangles_hidden += faces.size();
   result.record.triangles_before = result.triangles_before;
   std::vector<std::vector<TriMesh>> levels;
   for (const Batch& batch : batches) {
-    const auto target = triangle_target(options, batch.triangles, result.triangles_before);
-    result.triangles_target += target.value_or(0);
-    CollapseState state =
-        make_collapse_state(batch.meshes, batch.scales, batch.importance, diagonal, options, context);
-    std::unique_ptr<ViewMetric> views;
-    if (options.metric != Metric::quadric) {
-      views =
-          std::make_unique<ViewMetric>(state, model, batch.mesh_index, batch.importance, options, context);
-    }
-    CollapseOutcome outcome =
-        collapse(state, target.value_or(0), error_bound(options, diagonal), options, views.get(), context);
-    views.reset();
-    state = {};
+    const std::uint64_t target =
+        triangle_target(options, batch.triangles, result.triangles_before).value_or(0);
+    const MetricStage stage = metric_stage(options, target, batch.triangles);
+    result.triangles_target += target;
+    result.metric = stage.metric;
+    result.metric_from = stage.from;
+    CollapseOutcome outcome = collapse_batch(model, batch, target, stage, options, diagonal, context);
     combine(result, outcome);
     levels.push_back(replay(batch.meshes, outcome.record, outcome.record.steps.size()));
     append(result.record, std::move(outcome.record), batch.mesh_index);

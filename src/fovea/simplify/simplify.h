@@ -23,11 +23,15 @@ enum class Placement {
 
 /// What a collapse costs.
 enum class Metric {
+  automatic,        ///< Quadrics for the bulk, the image for the last part, if the target is small enough.
   quadric,          ///< Distance to the planes that a vertex stands for, attributes among them (quadric.h).
+  visibility,       ///< The same, times how much of a vertex's surface views see (exposure.h).
   entropy,          ///< What views lose of viewpoint entropy, by the regions of textures,
   polygon_entropy,  ///< or by triangles (Castelló et al. 2007).
   image,            ///< What changes in pictures of the original.
 };
+
+const char* to_string(Metric metric);
 
 /// What the pictures of `Metric::image` show.
 enum class ImagePass {
@@ -55,12 +59,17 @@ struct SimplifyOptions {
   double seam_weight = 1.0;
   /// Never move or remove vertices on open boundaries.
   bool lock_boundary = false;
-  Metric metric = Metric::quadric;
+  Metric metric = Metric::automatic;
+  /// The metric begins when so many times the triangles are left that are asked for; until then the quadric
+  /// error decides. None: 3 for the image, from the first collapse on for the entropies.
+  std::optional<double> metric_from;
   /// Where the other metrics look from: around the scene at rest, perspective.
   ViewOptions views{.set = ViewSet::dodecahedron};
   std::int64_t view_size = 256;  ///< Pixels along each side of a view.
   ImagePass image_pass = ImagePass::lit;
   SegmentOptions regions;  ///< Of textures, for `Metric::entropy`.
+  /// Drop the triangles that none of `views` sees (hidden_faces.h), before anything collapses.
+  bool cull_hidden = false;
   /// Never change the topology: no component vanishes, no hole or handle closes.
   bool keep_topology = false;
 };
@@ -92,6 +101,7 @@ struct SimplifyResult {
   CollapseRecord record;  ///< Steps down to that level, over `model.meshes` in order.
   std::uint64_t triangles_before = 0;
   std::uint64_t triangles_after = 0;
+  std::uint64_t triangles_hidden = 0;  ///< Dropped by `cull_hidden`.
   std::uint64_t triangles_target = 0;  ///< What the count targets came to; 0 if only an error bound.
   /// Error of the result: the largest root-mean-square distance, over the pieces of surface that a
   /// vertex stands for, between the original surface and the result, attribute deviations included
@@ -99,8 +109,10 @@ struct SimplifyResult {
   double error_rel = 0;  ///< As a fraction of the scene's diagonal.
   double error_abs = 0;  ///< In scene units.
   StopReason stop = StopReason::target;
-  BlockCounts blocked;  ///< Filled if `stop` is `stuck`.
-  double seconds = 0;   ///< Wall time.
+  BlockCounts blocked;              ///< Filled if `stop` is `stuck`.
+  Metric metric = Metric::quadric;  ///< What decided, never `automatic`; with several batches, of the last.
+  std::uint64_t metric_from = 0;    ///< Of a metric by views: from so many triangles on.
+  double seconds = 0;               ///< Wall time.
 };
 
 /// Collapses edges of all meshes of `model` until a target is reached, cheapest first over the whole

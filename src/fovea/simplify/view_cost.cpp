@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "fovea/base/parallel.h"
+#include "fovea/base/prefetch.h"
 
 namespace fovea {
 
@@ -27,14 +29,6 @@ double log2_of(double x) {
 
 }  // namespace
 
-std::int64_t squared_difference(PackedColor x, PackedColor y) {
-  const auto d = [&](int shift) {
-    return static_cast<int>(x >> shift & 255) - static_cast<int>(y >> shift & 255);
-  };
-  const int r = d(0), g = d(8), b = d(16), coverage = d(24);
-  return r * r + g * g + b * b + coverage * coverage / 8;
-}
-
 /// A face around the edge, in one showing.
 struct ViewCost::LocalFace {
   const Showing* showing = nullptr;
@@ -46,21 +40,14 @@ struct ViewCost::LocalFace {
 
 /// The faces around an edge and the pixels that they cover, before and after its collapse.
 struct ViewCost::Scratch {
-  Scratch(int view_width, int view_height, std::size_t shown_faces)
-      : width(view_width),
-        pixels(static_cast<std::size_t>(view_width) * static_cast<std::size_t>(view_height)),
-        changed_by(shown_faces, 0),
-        touched(pixels.size()) {}
+  explicit Scratch(std::size_t shown_faces) : changed_by(shown_faces, 0) {}
 
-  /// A face as the present view would see it.
+  /// A face as the present view would see it, and the pixels in which it would be in front.
   struct Seen {
+    bool before = false, after = false;  // whether the view sees it at all
     std::array<ScreenVertex, 3> corners;
     std::optional<FaceValues::Shading> shading;
-  };
-  struct Pixel {
-    std::uint32_t view = 0;          // in which it was touched last
-    std::uint32_t local = kInvalid;  // the nearest face after the collapse ...
-    float nearness = 0;              // ... and how near it is
+    std::vector<FaceValues::Pixel> pixels;
   };
 
   void begin_collapse() {
@@ -73,37 +60,35 @@ struct ViewCost::Scratch {
     faces.push_back(face);
     looks.emplace_back();
   }
-  /// Whether the collapse changes a shown face.
-  bool changes(std::uint32_t shown) const { return changed_by[shown] == collapse; }
-
-  void begin_view() {
-    ++view;
-    count = 0;
-    seen.resize(faces.size());
-  }
-  void see(std::uint32_t i, const std::array<ScreenVertex, 3>& corners) {
-    seen[i].corners = corners;
-    seen[i].shading.reset();
-  }
-  Pixel& touch(int x, int y) {
-    Pixel& p =
-        pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-    if (p.view != view) {
-      p = {view, kInvalid, 0};
-      touched[count++] = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-    }
-    return p;
+  /// Whether the collapse changes the face of a fragment; never the background.
+  bool changes(const Fragment& fragment) const {
+    return fragment.triangle != kInvalid && changed_by[fragment.triangle] == collapse;
   }
 
-  int width;
-  std::vector<Pixel> pixels;
+  /// Pixels of a view inside `box` from now on, none touched.
+  void begin_view(const SampleRect& pixels_box) {
+    box = pixels_box;
+    const std::size_t count = static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height);
+    touched.assign(count, 0);
+    local.assign(count, 0);
+    nearness.assign(count, -std::numeric_limits<float>::infinity());
+  }
+  /// Where pixel (x, y) of the view is in the box.
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y - box.top) * static_cast<std::size_t>(box.width) +
+           static_cast<std::size_t>(x - box.left);
+  }
+
   std::vector<std::uint32_t> changed_by;  // [#shown faces], the last collapse that changes them
-  std::uint32_t collapse = 0, view = 0;
-  std::vector<LocalFace> faces;
-  std::vector<std::optional<FaceLook>> looks;         // [#faces]
-  std::vector<Seen> seen;                             // [#faces]
-  std::vector<std::array<std::uint16_t, 2>> touched;  // [#pixels], of which `count` count
-  std::size_t count = 0;
+  std::uint32_t collapse = 0;
+  std::vector<LocalFace> faces;                // by shown number
+  std::vector<std::optional<FaceLook>> looks;  // [#faces]
+  std::array<std::vector<Seen>, 2> seen;       // [#faces] or more, in a view and the next
+  SampleRect box;
+  std::vector<std::uint8_t> touched;     // [#pixels of the box], whether a face covers it, before or after;
+  std::vector<std::uint32_t> local;      // the nearest face after the collapse, counted from 1,
+  std::vector<float> nearness;           // and how near it is
+  std::vector<std::uint32_t> values;     // of pixels that are shaded
   std::vector<PlannedCollapse> planned;  // [#showings of the slot]
   std::vector<ScreenVertex> merged;      // [#showings of the slot][#views]
   std::vector<std::pair<std::uint32_t, int>> deltas;
@@ -112,9 +97,10 @@ struct ViewCost::Scratch {
 ViewCost::~ViewCost() = default;
 
 ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceValues& values,
-                   ViewMeasure measure, int size, const Context& context)
+                   ViewMeasure measure, int size, std::vector<std::vector<std::uint32_t>> originals,
+                   const Context& context)
     : state_(state), shown_(shown), values_(values), measure_(measure) {
-  views_.assign(shown.view_count(), {FragmentLists(size, size), {}, {}});
+  views_.assign(shown.view_count(), {FragmentLists(size, size, values.background()), {}});
   const std::size_t pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   if (measure == ViewMeasure::entropy) {
     const double most = static_cast<double>(pixels) * log2_of(static_cast<double>(pixels) + 1);
@@ -141,14 +127,18 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
           if (state.mesh.face_alive(f)) put_in(v, showing, f);
         }
       }
-      if (measure == ViewMeasure::image) view.original = picture(v);
+      if (measure == ViewMeasure::entropy) continue;
+      for (std::size_t p = 0; p < pixels; ++p) {
+        const std::uint32_t now = view.lists.front(p).first.value;
+        const std::uint32_t first = originals.empty() ? now : originals[v][p];
+        view.lists.notes(p) = {first, static_cast<std::uint32_t>(squared_difference(now, first))};
+      }
     }
   });
 }
 
 std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
-  const FragmentLists& lists = views_.front().lists;
-  return std::make_shared<Scratch>(lists.width(), lists.height(), shown_.face_count());
+  return std::make_shared<Scratch>(shown_.face_count());
 }
 
 std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const Showing& showing,
@@ -160,10 +150,15 @@ std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const Showing& s
 
 // --- What is shown ---------------------------------------------------------------------------------------
 
-void ViewCost::swap_value(ViewState& view, const Fragment* before, const Fragment* after) const {
-  if (measure_ != ViewMeasure::entropy) return;
-  --view.count[value_of(before)];
-  ++view.count[value_of(after)];
+void ViewCost::swap_value(ViewState& view, std::size_t pixel, const Fragment& before,
+                          const Fragment& after) const {
+  if (measure_ == ViewMeasure::entropy) {
+    --view.count[before.value];
+    ++view.count[after.value];
+  } else {
+    std::array<std::uint32_t, 2>& notes = view.lists.notes(pixel);
+    notes[1] = static_cast<std::uint32_t>(squared_difference(after.value, notes[0]));
+  }
 }
 
 void ViewCost::put_in(std::size_t v, const Showing& showing, std::uint32_t f) {
@@ -174,17 +169,20 @@ void ViewCost::put_in(std::size_t v, const Showing& showing, std::uint32_t f) {
   ViewState& view = views_[v];
   view.lists.insert(
       shown_.shown_face(showing, f), at,
-      [&](int x, int y, std::uint32_t& value) { return shading.at(x, y, value); },
-      [&](std::size_t, const Fragment* before, const Fragment* after) { swap_value(view, before, after); });
+      [&](int y, int x0, int x1, std::uint32_t* out) { shading.row(y, x0, x1, out); },
+      [&](std::size_t p, const Fragment& before, const Fragment& after) {
+        swap_value(view, p, before, after);
+      });
 }
 
 void ViewCost::take_out(std::size_t v, const Showing& showing, std::uint32_t f) {
   const std::array<ScreenVertex, 3> at = corners(v, showing, f);
   if (!ShownSurface::is_seen(at, shown_.is_double_sided(f), showing.mirrored)) return;
   ViewState& view = views_[v];
-  view.lists.remove(
-      shown_.shown_face(showing, f), at,
-      [&](std::size_t, const Fragment* before, const Fragment* after) { swap_value(view, before, after); });
+  view.lists.remove(shown_.shown_face(showing, f), at,
+                    [&](std::size_t p, const Fragment& before, const Fragment& after) {
+                      swap_value(view, p, before, after);
+                    });
 }
 
 void ViewCost::put_in(std::span<const std::uint32_t> faces) {
@@ -241,11 +239,24 @@ double ViewCost::change_without(std::span<const std::uint32_t> faces, Scratch& s
 
 /// The change by the faces that are gathered.
 double ViewCost::change(Scratch& scratch) const {
+  // Of equally near ones the smaller number is in front: it comes first.
+  std::sort(scratch.faces.begin(), scratch.faces.end(),
+            [](const LocalFace& x, const LocalFace& y) { return x.shown < y.shown; });
+  for (std::vector<Scratch::Seen>& seen : scratch.seen) {
+    if (seen.size() < scratch.faces.size()) seen.resize(scratch.faces.size());
+  }
   std::int64_t sum = 0;
+  SampleRect next = look_at(0, scratch);
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    if (!lay_over(v, scratch)) continue;
-    sum += measure_ == ViewMeasure::image ? change_of_image(views_[v], scratch)
-                                          : change_of_entropy(views_[v], scratch);
+    const SampleRect box = next;
+    if (v + 1 < views_.size()) {  // most of the time would go into waiting for memory
+      next = look_at(v + 1, scratch);
+      fetch(v + 1, next);
+    }
+    if (box.width == 0) continue;
+    scratch.begin_view(box);
+    lay_over(v, scratch);
+    sum += measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
   }
   if (measure_ == ViewMeasure::image) return static_cast<double>(sum);
   return static_cast<double>(sum) / (log_scale_ * static_cast<double>(n_log_n_.size() - 1));
@@ -296,46 +307,88 @@ ViewCost::LocalFace ViewCost::local_face(const Showing& showing, std::uint32_t f
   return local;
 }
 
-/// Finds the pixels of a view that the faces cover before or after, and the nearest after. False if there are
-/// none.
-bool ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
-  scratch.begin_view();
-  const FragmentLists& lists = views_[view].lists;
-  for (std::uint32_t i = 0; i < scratch.faces.size(); ++i) {
-    const LocalFace& local = scratch.faces[i];
-    const auto in_view = [&](const std::array<const ScreenVertex*, 3>& v) {
-      return std::array<ScreenVertex, 3>{v[0][view], v[1][view], v[2][view]};
-    };
-    const std::array<ScreenVertex, 3> before = in_view(local.before);
-    if (ShownSurface::is_seen(before, local.double_sided, local.showing->mirrored)) {
-      for_spans(before, lists.rect(), [&](int y, int x0, int x1, const NearnessPlane&) {
-        for (int x = x0; x < x1; ++x) scratch.touch(x, y);
-      });
+/// Notes how a view sees the faces, before and after. The box of the pixels that they may cover, without
+/// width if there are none.
+SampleRect ViewCost::look_at(std::size_t view, Scratch& scratch) const {
+  std::int32_t left = std::numeric_limits<std::int32_t>::max(),
+               right = std::numeric_limits<std::int32_t>::min();
+  std::int32_t top = left, bottom = right;
+  const auto is_seen = [&](const LocalFace& local, const std::array<const ScreenVertex*, 3>& v,
+                           std::array<ScreenVertex, 3>& corners) {
+    corners = {v[0][view], v[1][view], v[2][view]};
+    if (!ShownSurface::is_seen(corners, local.double_sided, local.showing->mirrored)) return false;
+    for (const ScreenVertex& c : corners) {
+      left = std::min(left, c.x);
+      right = std::max(right, c.x);
+      top = std::min(top, c.y);
+      bottom = std::max(bottom, c.y);
     }
-    if (local.goes) continue;
-    const std::array<ScreenVertex, 3> after = in_view(local.after);
-    if (!ShownSurface::is_seen(after, local.double_sided, local.showing->mirrored)) continue;
-    scratch.see(i, after);
-    for_spans(after, lists.rect(), [&](int y, int x0, int x1, const NearnessPlane& plane) {
-      plane.for_row(y, x0, x1, [&](int x, float nearness) {
-        Scratch::Pixel& pixel = scratch.touch(x, y);
-        if (pixel.local != kInvalid &&
-            (nearness < pixel.nearness ||
-             (nearness == pixel.nearness && local.shown > scratch.faces[pixel.local].shown)))
-          return;
-        std::uint32_t value = 0;
-        if (local.has_holes && !shading(scratch, i, view).at(x, y, value)) return;
-        pixel.nearness = nearness;
-        pixel.local = i;
-      });
-    });
+    return true;
+  };
+  for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
+    const LocalFace& local = scratch.faces[i];
+    Scratch::Seen& seen = scratch.seen[view % 2][i];
+    seen.before = is_seen(local, local.before, seen.corners);
+    seen.after = !local.goes && is_seen(local, local.after, seen.corners);
+    seen.shading.reset();
+    seen.pixels.clear();
   }
-  return scratch.count > 0;
+  if (left > right) return {};
+  const SampleRect whole = views_[view].lists.rect();
+  const int x0 = std::max(left >> kSubsampleBits, 0), y0 = std::max(top >> kSubsampleBits, 0);
+  const int x1 = std::min((right >> kSubsampleBits) + 1, whole.width),
+            y1 = std::min((bottom >> kSubsampleBits) + 1, whole.height);
+  return x0 < x1 && y0 < y1 ? SampleRect{x0, y0, x1 - x0, y1 - y0} : SampleRect{};
+}
+
+/// Starts to load the pixels of a box.
+void ViewCost::fetch(std::size_t view, const SampleRect& box) const {
+  constexpr int kPerLine = 2;
+  const FragmentLists& lists = views_[view].lists;
+  for (int y = box.top; y < box.top + box.height; ++y) {
+    for (int x = box.left; x < box.left + box.width; x += kPerLine) prefetch(&lists.front(lists.pixel(x, y)));
+  }
+}
+
+/// Finds the pixels of a view that the faces cover before or after, and the nearest after.
+void ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
+  for (std::size_t i = 0; i < scratch.faces.size(); ++i) lay_over(view, i, scratch);
+}
+
+/// The same of face i alone.
+void ViewCost::lay_over(std::size_t view, std::size_t i, Scratch& scratch) const {
+  const LocalFace& local = scratch.faces[i];
+  const Scratch::Seen& seen = scratch.seen[view % 2][i];
+  const SampleRect whole = views_[view].lists.rect();
+  if (seen.before) {
+    for_spans({local.before[0][view], local.before[1][view], local.before[2][view]}, whole,
+              [&](int y, int begin, int end, const NearnessPlane&) {
+                std::fill_n(scratch.touched.data() + scratch.at(begin, y), end - begin, std::uint8_t{1});
+              });
+  }
+  if (!seen.after) return;
+  for_spans(seen.corners, whole, [&](int y, int begin, int end, const NearnessPlane& plane) {
+    const std::size_t first = scratch.at(begin, y);
+    if (local.has_holes) {
+      scratch.values.resize(static_cast<std::size_t>(whole.width));
+      shading(scratch, i, view).row(y, begin, end, scratch.values.data());
+    }
+    float* const nearness = scratch.nearness.data() + first;
+    std::uint32_t* const nearest = scratch.local.data() + first;
+    std::fill_n(scratch.touched.data() + first, end - begin, std::uint8_t{1});
+    const auto number = static_cast<std::uint32_t>(i + 1);
+    plane.for_row(y, begin, end, [&](int x, float n) {
+      const std::size_t k = static_cast<std::size_t>(x - begin);
+      if (local.has_holes && scratch.values[k] == FragmentLists::kHole) return;
+      nearest[k] = n > nearness[k] ? number : nearest[k];
+      nearness[k] = n > nearness[k] ? n : nearness[k];
+    });
+  });
 }
 
 /// What face i would show, made when it is first asked for.
-const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::uint32_t i, std::size_t view) const {
-  Scratch::Seen& seen = scratch.seen[i];
+const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::size_t i, std::size_t view) const {
+  Scratch::Seen& seen = scratch.seen[view % 2][i];
   if (!seen.shading) {
     const LocalFace& local = scratch.faces[i];
     std::optional<FaceLook>& look = scratch.looks[i];
@@ -345,41 +398,58 @@ const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::uint32_t i, 
   return *seen.shading;
 }
 
-/// Calls change(pixel, value before, value after) where something else would be in front.
+/// Calls change(pixel as it is, value after) where something else would be in front.
 template <class Change>
-void ViewCost::for_changes(const ViewState& view, Scratch& scratch, Change&& change) const {
-  const auto number = static_cast<std::size_t>(&view - views_.data());
-  for (const auto& [x, y] : std::span(scratch.touched).first(scratch.count)) {
-    const std::size_t p = view.lists.pixel(x, y);
-    const std::span<const Fragment> list = view.lists.at(p);
-    const Scratch::Pixel& pixel = scratch.pixels[p];
-    std::size_t stays = 0;
-    while (stays < list.size() && scratch.changes(list[stays].triangle)) ++stays;
-    const bool is_new =
-        pixel.local != kInvalid &&
-        (stays == list.size() ||
-         Fragment{pixel.nearness, scratch.faces[pixel.local].shown, 0}.is_before(list[stays]));
-    if (!is_new && stays == 0) continue;
-    std::uint32_t after = values_.background();
-    if (is_new) {
-      if (!shading(scratch, pixel.local, number).at(x, y, after)) continue;
-    } else if (stays < list.size()) {
-      after = list[stays].value;
+void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) const {
+  const FragmentLists& lists = views_[v].lists;
+  std::vector<Scratch::Seen>& seen = scratch.seen[v % 2];
+  const SampleRect& box = scratch.box;
+  std::size_t k = 0;
+  for (int y = box.top; y < box.top + box.height; ++y) {
+    for (int x = box.left; x < box.left + box.width; ++x, ++k) {
+      if (scratch.touched[k] == 0) continue;
+      const std::size_t p = lists.pixel(x, y);
+      const FrontPixel& front = lists.front(p);
+      const bool goes = scratch.changes(front.first);
+      const Fragment stays = !goes ? front.first : nearest_that_stays(lists, p, scratch);
+      const std::uint32_t local = scratch.local[k];
+      if (local != 0 && Fragment{scratch.nearness[k], scratch.faces[local - 1].shown, 0}.is_before(stays)) {
+        seen[local - 1].pixels.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+      } else if (goes) {
+        change(front, stays.value);
+      }
     }
-    change(p, value_of(list.empty() ? nullptr : list.data()), after);
+  }
+  for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
+    const std::vector<FaceValues::Pixel>& pixels = seen[i].pixels;
+    if (pixels.empty()) continue;
+    scratch.values.resize(pixels.size());
+    shading(scratch, i, v).at(pixels, scratch.values.data());
+    for (std::size_t n = 0; n < pixels.size(); ++n)
+      change(lists.front(lists.pixel(pixels[n].x, pixels[n].y)), scratch.values[n]);
   }
 }
 
-std::int64_t ViewCost::change_of_image(const ViewState& view, Scratch& scratch) const {
+/// What is nearest at a pixel of all that the collapse does not change.
+Fragment ViewCost::nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch) {
+  const FrontPixel& front = lists.front(pixel);
+  if (!scratch.changes(front.second)) return front.second;
+  for (const Fragment& fragment : lists.at(pixel).subspan(2)) {
+    if (!scratch.changes(fragment)) return fragment;
+  }
+  return lists.background();
+}
+
+std::int64_t ViewCost::change_of_image(std::size_t v, Scratch& scratch) const {
   std::int64_t sum = 0;
-  for_changes(view, scratch, [&](std::size_t p, std::uint32_t before, std::uint32_t after) {
-    if (before == after) return;
-    sum += squared_difference(after, view.original[p]) - squared_difference(before, view.original[p]);
+  for_changes(v, scratch, [&](const FrontPixel& pixel, std::uint32_t after) {
+    sum += squared_difference(after, original(pixel)) - error(pixel);
   });
   return sum;
 }
 
-std::int64_t ViewCost::change_of_entropy(const ViewState& view, Scratch& scratch) const {
+std::int64_t ViewCost::change_of_entropy(std::size_t v, Scratch& scratch) const {
+  const ViewState& view = views_[v];
   auto& deltas = scratch.deltas;
   deltas.clear();
   const auto add = [&](std::uint32_t region, int pixels) {
@@ -390,9 +460,9 @@ std::int64_t ViewCost::change_of_entropy(const ViewState& view, Scratch& scratch
     }
     deltas.emplace_back(region, pixels);
   };
-  for_changes(view, scratch, [&](std::size_t, std::uint32_t before, std::uint32_t after) {
-    if (before == after) return;
-    add(before, -1);
+  for_changes(v, scratch, [&](const FrontPixel& pixel, std::uint32_t after) {
+    if (pixel.first.value == after) return;
+    add(pixel.first.value, -1);
     add(after, 1);
   });
   std::int64_t sum = 0;
@@ -407,8 +477,7 @@ std::vector<std::uint32_t> ViewCost::picture(std::size_t view) const {
   const FragmentLists& lists = views_[view].lists;
   std::vector<std::uint32_t> values(static_cast<std::size_t>(lists.width()) *
                                     static_cast<std::size_t>(lists.height()));
-  for (std::size_t p = 0; p < values.size(); ++p)
-    values[p] = value_of(lists.at(p).empty() ? nullptr : lists.at(p).data());
+  for (std::size_t p = 0; p < values.size(); ++p) values[p] = lists.front(p).first.value;
   return values;
 }
 
@@ -417,8 +486,9 @@ double ViewCost::total() const {
   double bits = 0;
   for (const ViewState& view : views_) {
     if (measure_ == ViewMeasure::image) {
-      const std::vector<std::uint32_t> now = picture(static_cast<std::size_t>(&view - views_.data()));
-      for (std::size_t p = 0; p < now.size(); ++p) sum += squared_difference(now[p], view.original[p]);
+      const std::size_t pixels =
+          static_cast<std::size_t>(view.lists.width()) * static_cast<std::size_t>(view.lists.height());
+      for (std::size_t p = 0; p < pixels; ++p) sum += error(view.lists.front(p));
     } else {
       std::int64_t logs = 0;
       for (const std::uint32_t n : view.count) logs += n_log_n_[n];
@@ -432,7 +502,7 @@ double ViewCost::total() const {
 std::size_t ViewCost::bytes() const {
   std::size_t sum = shown_.bytes() + n_log_n_.size() * sizeof(std::int64_t);
   for (const ViewState& view : views_) {
-    sum += view.lists.bytes() + (view.original.size() + view.count.size()) * sizeof(std::uint32_t);
+    sum += view.lists.bytes() + view.count.size() * sizeof(std::uint32_t);
   }
   return sum;
 }

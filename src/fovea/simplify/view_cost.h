@@ -23,7 +23,13 @@ enum class ViewMeasure {
 };
 
 /// |x − y|² over the channels, 0 … 255; between a pixel with and one without a surface 8128 more.
-std::int64_t squared_difference(PackedColor x, PackedColor y);
+inline std::int32_t squared_difference(PackedColor x, PackedColor y) {
+  const auto d = [&](int shift) {
+    return static_cast<std::int32_t>(x >> shift & 255) - static_cast<std::int32_t>(y >> shift & 255);
+  };
+  const std::int32_t r = d(0), g = d(8), b = d(16), coverage = d(24);
+  return r * r + g * g + b * b + coverage * coverage / 8;
+}
 
 /// What collapses change in a set of views, from lists of the fragments behind every pixel: only pixels that
 /// the triangles around an edge cover are looked at, and nothing is drawn again.
@@ -38,9 +44,10 @@ std::int64_t squared_difference(PackedColor x, PackedColor y);
 /// is predicted is exactly that between two fresh renderings.
 class ViewCost {
  public:
-  /// Renders what is shown, views in parallel. All must outlive this. `size` is that of the views.
+  /// Renders what is shown, views in parallel. All must outlive this. `size` is that of the views;
+  /// `originals` [#views][#pixels] are the colours to compare with, those of now if there are none.
   ViewCost(const CollapseState& state, ShownSurface& shown, const FaceValues& values, ViewMeasure measure,
-           int size, const Context& context);
+           int size, std::vector<std::vector<std::uint32_t>> originals, const Context& context);
   ~ViewCost();
 
   /// Memory of a thread that prices.
@@ -73,29 +80,32 @@ class ViewCost {
 
  private:
   struct ViewState {
-    FragmentLists lists;
-    std::vector<std::uint32_t> original;  // [#pixels], what they showed at first (image)
-    std::vector<std::uint32_t> count;     // [#regions], their pixels, those of the background first (entropy)
+    FragmentLists lists;               // with notes, see below
+    std::vector<std::uint32_t> count;  // [#regions], their pixels, those of the background first (entropy)
   };
+  // Notes of pixels (image): what they showed at first, and how far what they show now is from that.
+  static std::uint32_t original(const FrontPixel& pixel) { return pixel.notes[0]; }
+  static std::int32_t error(const FrontPixel& pixel) { return static_cast<std::int32_t>(pixel.notes[1]); }
   void put_in(std::size_t view, const Showing& showing, std::uint32_t f);
   void take_out(std::size_t view, const Showing& showing, std::uint32_t f);
-  void swap_value(ViewState& view, const Fragment* before, const Fragment* after) const;
+  void swap_value(ViewState& view, std::size_t pixel, const Fragment& before, const Fragment& after) const;
   std::array<ScreenVertex, 3> corners(std::size_t view, const Showing& showing, std::uint32_t f) const;
-  std::uint32_t value_of(const Fragment* fragment) const {
-    return fragment == nullptr ? values_.background() : fragment->value;
-  }
   double along(std::uint32_t a, std::uint32_t b, Vec3d p) const;
   void gather(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, Scratch& scratch) const;
   struct LocalFace;
   LocalFace local_face(const Showing& showing, std::uint32_t f, const PlannedCollapse& planned,
                        const ScreenVertex* merged) const;
   double change(Scratch& scratch) const;
-  bool lay_over(std::size_t view, Scratch& scratch) const;
-  const FaceValues::Shading& shading(Scratch& scratch, std::uint32_t i, std::size_t view) const;
+  SampleRect look_at(std::size_t view, Scratch& scratch) const;
+  void fetch(std::size_t view, const SampleRect& box) const;
+  void lay_over(std::size_t view, Scratch& scratch) const;
+  void lay_over(std::size_t view, std::size_t i, Scratch& scratch) const;
+  const FaceValues::Shading& shading(Scratch& scratch, std::size_t i, std::size_t view) const;
+  static Fragment nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch);
   template <class Change>
-  void for_changes(const ViewState& view, Scratch& scratch, Change&& change) const;
-  std::int64_t change_of_image(const ViewState& view, Scratch& scratch) const;
-  std::int64_t change_of_entropy(const ViewState& view, Scratch& scratch) const;
+  void for_changes(std::size_t view, Scratch& scratch, Change&& change) const;
+  std::int64_t change_of_image(std::size_t view, Scratch& scratch) const;
+  std::int64_t change_of_entropy(std::size_t view, Scratch& scratch) const;
 
   const CollapseState& state_;
   ShownSurface& shown_;

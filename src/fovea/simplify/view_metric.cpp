@@ -19,51 +19,78 @@ namespace {
 constexpr double kTie = 10;
 /// Pixels of all views together: some 16 bytes each.
 constexpr double kMostPixels = 1 << 27;
+/// Of vertices in the views that pictures of the original are taken in together.
+constexpr std::size_t kMostScreenBytes = std::size_t{1} << 26;
 
-PixelContent content_of(const SimplifyOptions& options) {
-  switch (options.metric) {
+PixelContent content_of(Metric metric, ImagePass pass) {
+  switch (metric) {
     case Metric::entropy: return PixelContent::region;
     case Metric::polygon_entropy: return PixelContent::face;
-    default: return options.image_pass == ImagePass::lit ? PixelContent::lit : PixelContent::color;
+    default: return pass == ImagePass::lit ? PixelContent::lit : PixelContent::color;
   }
 }
 
 }  // namespace
 
 ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
-                       std::span<const std::size_t> mesh_index,
-                       std::span<const VertexField* const> importance, const SimplifyOptions& options,
+                       std::span<const std::size_t> mesh_index, Metric metric, const SimplifyOptions& options,
                        Context& context)
-    : state_(state), placement_(options.placement) {
-  const Pose pose = rest_pose(model);
-  const int size = static_cast<int>(options.view_size);
-  scene_ = make_render_scene(model, pose, context);
-  const std::vector<View> views = views_of(options.views, model, pose, scene_);
-  if (static_cast<double>(views.size()) * size * size > kMostPixels) {
-    throw Error(
-        ErrorKind::limit,
-        fmt::format("{} views of {} × {} pixels are more than a metric looks at", views.size(), size, size),
-        "--view-size", "take fewer or smaller views");
+    : state_(state),
+      model_(model),
+      mesh_index_(mesh_index),
+      placement_(options.placement),
+      content_(content_of(metric, options.image_pass)),
+      size_(static_cast<int>(options.view_size)),
+      pose_(rest_pose(model)),
+      scene_(make_render_scene(model, pose_, context)),
+      views_(views_of(options.views, model, pose_, scene_.sphere)) {
+  if (static_cast<double>(views_.size()) * size_ * size_ > kMostPixels) {
+    throw Error(ErrorKind::limit,
+                fmt::format("{} views of {} × {} pixels are more than a metric looks at", views_.size(),
+                            size_, size_),
+                "--view-size", "take fewer or smaller views");
   }
-  shown_ = std::make_unique<ShownSurface>(state, model, mesh_index, scene_, pose, views, size, context);
-  if (options.metric == Metric::entropy)
+  if (content_ == PixelContent::region)
     regions_ = std::make_unique<ModelRegions>(model_regions(model, options.regions, context));
-  values_ = std::make_unique<FaceValues>(state, *shown_, scene_, content_of(options), size, regions_.get(),
-                                         mesh_index);
-  const bool is_image = options.metric == Metric::image;
-  cost_ = std::make_unique<ViewCost>(state, *shown_, *values_,
-                                     is_image ? ViewMeasure::image : ViewMeasure::entropy, size, context);
-  const auto count = static_cast<double>(views.size());
-  scale_ = is_image ? 1 / (3.0 * 255 * 255 * count * size * size) : 1 / count;
-  place_.resize(state.mesh.edges.size());
-  noted_.assign(state.mesh.edges.size(), 0);
-  changed_.assign(state.mesh.vertices.size(), 0);
+  if (is_image()) take_pictures(context);
+}
+
+/// A few views at a time, as a model may have far more vertices now than when it is looked at.
+void ViewMetric::take_pictures(const Context& context) {
+  const std::size_t row = std::max<std::size_t>(state_.mesh.vertices.size() * sizeof(ScreenVertex), 1);
+  const std::size_t together = std::clamp<std::size_t>(kMostScreenBytes / row, 1, views_.size());
+  for (std::size_t first = 0; first < views_.size(); first += together) {
+    const std::size_t count = std::min(together, views_.size() - first);
+    make_cost(std::span(views_).subspan(first, count), {}, context);
+    for (std::size_t v = 0; v < count; ++v) originals_.push_back(cost_->picture(v));
+    cost_.reset();
+  }
+}
+
+/// Draws the state as it is in some views.
+void ViewMetric::make_cost(std::span<const View> views, Pictures originals, const Context& context) {
+  shown_ = std::make_unique<ShownSurface>(state_, model_, mesh_index_, scene_, pose_,
+                                          std::vector<View>(views.begin(), views.end()), size_, context);
+  values_ =
+      std::make_unique<FaceValues>(state_, *shown_, scene_, content_, size_, regions_.get(), mesh_index_);
+  cost_ = std::make_unique<ViewCost>(state_, *shown_, *values_,
+                                     is_image() ? ViewMeasure::image : ViewMeasure::entropy, size_,
+                                     std::move(originals), context);
+}
+
+void ViewMetric::look(std::span<const VertexField* const> importance, const Context& context) {
+  make_cost(views_, std::move(originals_), context);
+  const auto count = static_cast<double>(views_.size());
+  scale_ = is_image() ? 1 / (3.0 * 255 * 255 * count * size_ * size_) : 1 / count;
+  place_.resize(state_.mesh.edges.size());
+  noted_.assign(state_.mesh.edges.size(), 0);
+  changed_.assign(state_.mesh.vertices.size(), 0);
   for (std::size_t s = 0; s < importance.size(); ++s) {
     if (importance[s] == nullptr || importance[s]->empty()) continue;
-    if (importance_.empty()) importance_.assign(state.mesh.vertices.size(), 1.0f);
+    if (importance_.empty()) importance_.assign(state_.mesh.vertices.size(), 1.0f);
     for (std::size_t v = 0; v < importance[s]->size(); ++v) {
-      const std::size_t at = state.slots[s].first_vertex + v;
-      importance_[at] = importance[s]->values()[state.mesh_vertex[at].index()];
+      const std::size_t at = state_.slots[s].first_vertex + v;
+      importance_[at] = importance[s]->values()[state_.mesh_vertex[at].index()];
     }
   }
 }

@@ -15,18 +15,22 @@
 
 namespace fovea {
 
-/// What collapses cost by what views see, for the collapse engine.
+/// What collapses cost by what views see, for the collapse engine. Made of the original; `look` comes before
+/// everything else.
 ///
 /// A price is what the views lose (view_cost.h) by vertex importance, with a little of the quadric error,
 /// which decides where views see nothing and keeps the order sane where pixels are chance. Prices that
 /// changes around an edge have outdated are known; so an edge is priced again only when it comes up.
 class ViewMetric {
  public:
-  /// Renders the meshes of `state`, whose numbers in the model are `mesh_index`; `importance` are the fields
-  /// that `state` was made with.
+  /// `metric` is one by views. Takes the pictures that results are compared with, of the meshes of `state` as
+  /// they are now. Their numbers in the model are `mesh_index`. All must outlive this.
   ViewMetric(const CollapseState& state, const Model& model, std::span<const std::size_t> mesh_index,
-             std::span<const VertexField* const> importance, const SimplifyOptions& options,
-             Context& context);
+             Metric metric, const SimplifyOptions& options, Context& context);
+
+  /// Draws what is left of the meshes; from now on prices can be asked for. `importance` are the fields that
+  /// the state was made with.
+  void look(std::span<const VertexField* const> importance, const Context& context);
 
   /// What a thread needs to price.
   struct Memory {
@@ -56,9 +60,21 @@ class ViewMetric {
   const ViewCost& cost() const { return *cost_; }
 
  private:
+  using Pictures = std::vector<std::vector<std::uint32_t>>;  // [#views][#pixels]
+  bool is_image() const { return content_ == PixelContent::color || content_ == PixelContent::lit; }
+  void take_pictures(const Context& context);
+  void make_cost(std::span<const View> views, Pictures originals, const Context& context);
+
   const CollapseState& state_;
+  const Model& model_;
+  const std::span<const std::size_t> mesh_index_;
   const Placement placement_;
+  const PixelContent content_;
+  const int size_;
+  const Pose pose_;
   RenderScene scene_;
+  std::vector<View> views_;
+  Pictures originals_;  // of the metric `image`, until `look`
   std::unique_ptr<ModelRegions> regions_;
   std::unique_ptr<ShownSurface> shown_;
   std::unique_ptr<FaceValues> values_;

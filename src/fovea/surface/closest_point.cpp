@@ -1,12 +1,9 @@
 #include "fovea/surface/closest_point.h"
 
-#include <embree3/rtcore.h>
-
 #include <cmath>
-#include <cstring>
 #include <limits>
 
-#include "fovea/base/error.h"
+#include "fovea/surface/embree_scene.h"
 
 namespace fovea {
 
@@ -34,35 +31,10 @@ Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
 }
 
 struct ClosestPoint::Tree {
-  const Surface* surface = nullptr;
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  explicit Tree(const Surface& triangles) : surface(&triangles), scene(triangles) {}
 
-  explicit Tree(const Surface& triangles) : surface(&triangles) {
-    if (triangles.triangles.empty()) return;
-    // One thread: many small trees are built, and results must not depend on the build's order.
-    device = rtcNewDevice("threads=1");
-    if (device == nullptr) throw Error(ErrorKind::internal, "Embree gives no device");
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                              sizeof(Vec3f), triangles.positions.size());
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            3 * sizeof(std::uint32_t), triangles.triangles.size());
-    std::memcpy(positions, triangles.positions.data(), triangles.positions.size() * sizeof(Vec3f));
-    std::memcpy(indices, triangles.triangles.data(), triangles.triangles.size() * 3 * sizeof(std::uint32_t));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-  }
-  ~Tree() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-  Tree(const Tree&) = delete;
-  Tree& operator=(const Tree&) = delete;
+  const Surface* surface;
+  EmbreeScene scene;
 };
 
 namespace {
@@ -97,7 +69,7 @@ ClosestPoint& ClosestPoint::operator=(ClosestPoint&&) noexcept = default;
 
 ClosestPoint::Hit ClosestPoint::nearest(Vec3d p) const {
   Query query{tree_->surface, p, {{}, std::numeric_limits<double>::infinity(), 0}};
-  if (tree_->scene == nullptr) return query.best;
+  if (tree_->scene.empty()) return query.best;
   RTCPointQuery point;
   point.x = static_cast<float>(p.x);
   point.y = static_cast<float>(p.y);
@@ -106,7 +78,7 @@ ClosestPoint::Hit ClosestPoint::nearest(Vec3d p) const {
   point.radius = std::numeric_limits<float>::infinity();
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  rtcPointQuery(tree_->scene, &point, &context, look_at_triangle, &query);
+  rtcPointQuery(tree_->scene.get(), &point, &context, look_at_triangle, &query);
   return query.best;
 }
 

@@ -14,6 +14,7 @@ namespace fovea {
 struct Pose {
   std::vector<Mat4> node_world;                    ///< [#nodes], node to world.
   std::vector<std::vector<double>> morph_weights;  ///< [#nodes][#targets of its mesh]; empty without a mesh.
+  friend bool operator==(const Pose&, const Pose&) = default;
 };
 
 /// The nodes as the file places them.
