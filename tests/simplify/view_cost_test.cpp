@@ -40,7 +40,7 @@ struct Trial {
     const std::vector<double> scales(meshes.size(), 1.0);
     state = make_collapse_state(meshes, scales, pointers, {}, bounds(model).diagonal(), options, context);
     views = std::make_unique<ViewMetric>(state, model, mesh_index, options.metric, options, context);
-    views->look(pointers, context);
+    views->look(pointers);
   }
   CollapseOutcome to(std::uint64_t triangles) {
     CollapseOutcome outcome;
@@ -51,7 +51,7 @@ struct Trial {
   /// Views of the state as it is now, drawn anew.
   std::unique_ptr<ViewMetric> fresh() {
     auto drawn = std::make_unique<ViewMetric>(state, model, mesh_index, options.metric, options, context);
-    drawn->look({}, context);
+    drawn->look({});
     return drawn;
   }
 };

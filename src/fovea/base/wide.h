@@ -18,9 +18,9 @@
 namespace fovea {
 
 /// Numbers that such functions work on together: loops of fixed length become vector instructions.
-constexpr std::size_t kWide = 16;
+constexpr std::size_t kWide = 8;
 template <class T>
-struct alignas(64) WideArray : std::array<T, kWide> {};
+struct alignas(32) WideArray : std::array<T, kWide> {};
 using WideFloats = WideArray<float>;
 using WideInts = WideArray<std::int32_t>;
 using WideWords = WideArray<std::uint32_t>;

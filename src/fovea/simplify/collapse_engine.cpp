@@ -124,23 +124,12 @@ class Engine {
 };
 
 void Engine::fill_queue() {
-  if (views_ != nullptr) {
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t e = 0; e < edge_count_; ++e) {
-      if (mesh_.edge_alive(e)) all.push_back(e);
-    }
-    constexpr std::size_t kStep = 1 << 12;
-    for (std::size_t begin = 0; begin < all.size(); begin += kStep) {
-      price_by_views(std::span(all).subspan(begin, std::min(kStep, all.size() - begin)));
-      if (!context_.advance("price", static_cast<double>(begin) / static_cast<double>(all.size()))) return;
-    }
-  } else {
-    price_edges();
-  }
+  price_edges();
   if (options_.keep_topology || state_.components.count() < 2) return;
   for (std::uint32_t i = 0; i < state_.components.count(); ++i) queue_.set(edge_count_ + i, vanish_price(i));
 }
 
+/// Prices all edges by the quadric error; where views decide that is the least that they can cost.
 void Engine::price_edges() {
   std::vector<float> cost(edge_count_, std::numeric_limits<float>::infinity());
   parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
@@ -151,7 +140,9 @@ void Engine::price_edges() {
     }
   });
   for (std::uint32_t e = 0; e < edge_count_; ++e) {
-    if (std::isfinite(cost[e])) queue_.set(e, cost[e]);
+    if (!std::isfinite(cost[e])) continue;
+    const auto quadric_cost = static_cast<double>(cost[e]);
+    queue_.set(e, views_ == nullptr ? quadric_cost : ViewMetric::least_price(quadric_cost));
   }
 }
 
@@ -267,8 +258,8 @@ void Engine::take_batch() {
   }
 }
 
-/// Takes the cheapest item that has the price it was queued for. Prices of edges that something has changed
-/// around are found anew when they come up, of the next few in parallel.
+/// Takes the cheapest item that has the price it was queued for. Edges are priced when they come up for the
+/// first time, and anew when something has changed around them; the next few with them, in parallel.
 void Engine::take_by_views() {
   for (;;) {
     const std::uint32_t item = queue_.first();
@@ -278,9 +269,11 @@ void Engine::take_by_views() {
       queue_.remove(item);
       return;
     }
+    // What is priced for the first time will be needed; new prices can go out of date before they are.
+    const std::size_t most = views_->is_noted(item) ? kTogether : kAhead;
     std::vector<std::uint32_t> stale;
     std::vector<std::pair<std::uint32_t, double>> others;
-    for (std::size_t i = 0; i < kAhead && stale.size() < kTogether; ++i) {
+    for (std::size_t i = 0; i < kAhead && stale.size() < most; ++i) {
       const std::uint32_t next = queue_.first();
       if (next == kInvalid) break;
       if (next >= edge_count_ || views_->is_fresh(next)) {

@@ -172,7 +172,7 @@ CollapseOutcome collapse_batch(const Model& model, const Batch& batch, std::uint
   ViewMetric views(state, model, batch.mesh_index, stage.metric, options, context);
   if (stage.from < batch.triangles) collapse(state, stage.from, bound, options, nullptr, context, outcome);
   if (outcome.stop != StopReason::target) return outcome;
-  views.look(batch.importance, context);
+  views.look(batch.importance);
   collapse(state, target, bound, options, &views, context, outcome);
   return outcome;
 }

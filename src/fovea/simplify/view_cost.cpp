@@ -185,20 +185,30 @@ void ViewCost::take_out(std::size_t v, const Showing& showing, std::uint32_t f) 
                     });
 }
 
-void ViewCost::put_in(std::span<const std::uint32_t> faces) {
-  for (const std::uint32_t f : faces) {
-    for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) {
-      for (std::size_t v = 0; v < views_.size(); ++v) put_in(v, showing, f);
+void ViewCost::put_in(std::span<const std::uint32_t> faces, const Context& context) {
+  for_views(context, [&](std::size_t v) {
+    for (const std::uint32_t f : faces) {
+      for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) put_in(v, showing, f);
     }
-  }
+  });
 }
 
-void ViewCost::take_out(std::span<const std::uint32_t> faces) {
-  for (const std::uint32_t f : faces) {
-    for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) {
-      for (std::size_t v = 0; v < views_.size(); ++v) take_out(v, showing, f);
+void ViewCost::take_out(std::span<const std::uint32_t> faces, const Context& context) {
+  for_views(context, [&](std::size_t v) {
+    for (const std::uint32_t f : faces) {
+      for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) take_out(v, showing, f);
     }
-  }
+  });
+}
+
+/// Calls f(view) for all of them; a part for each thread, as it is little work.
+template <class F>
+void ViewCost::for_views(const Context& context, F&& f) {
+  const auto threads = static_cast<std::size_t>(context.thread_count());
+  parallel_for(context, views_.size(), (views_.size() + threads - 1) / threads,
+               [&](std::size_t begin, std::size_t end) {
+                 for (std::size_t v = begin; v < end; ++v) f(v);
+               });
 }
 
 /// Where p lies between a and b, 0 … 1.

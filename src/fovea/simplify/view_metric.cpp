@@ -13,10 +13,6 @@ namespace fovea {
 
 namespace {
 
-/// How much the quadric error (distance² × area, in diagonals) counts beside the share of all pixels that
-/// change. On three models at 5 % a thirtieth of it loses where parts are small, ten times as much loses
-/// against it elsewhere.
-constexpr double kTie = 10;
 /// Pixels of all views together: some 16 bytes each.
 constexpr double kMostPixels = 1 << 27;
 /// Of vertices in the views that pictures of the original are taken in together.
@@ -36,6 +32,7 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
                        std::span<const std::size_t> mesh_index, Metric metric, const SimplifyOptions& options,
                        Context& context)
     : state_(state),
+      context_(context),
       model_(model),
       mesh_index_(mesh_index),
       placement_(options.placement),
@@ -52,39 +49,39 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
   }
   if (content_ == PixelContent::region)
     regions_ = std::make_unique<ModelRegions>(model_regions(model, options.regions, context));
-  if (is_image()) take_pictures(context);
+  if (is_image()) take_pictures();
 }
 
 /// A few views at a time, as a model may have far more vertices now than when it is looked at.
-void ViewMetric::take_pictures(const Context& context) {
+void ViewMetric::take_pictures() {
   const std::size_t row = std::max<std::size_t>(state_.mesh.vertices.size() * sizeof(ScreenVertex), 1);
   const std::size_t together = std::clamp<std::size_t>(kMostScreenBytes / row, 1, views_.size());
   for (std::size_t first = 0; first < views_.size(); first += together) {
     const std::size_t count = std::min(together, views_.size() - first);
-    make_cost(std::span(views_).subspan(first, count), {}, context);
+    make_cost(std::span(views_).subspan(first, count), {});
     for (std::size_t v = 0; v < count; ++v) originals_.push_back(cost_->picture(v));
     cost_.reset();
   }
 }
 
 /// Draws the state as it is in some views.
-void ViewMetric::make_cost(std::span<const View> views, Pictures originals, const Context& context) {
+void ViewMetric::make_cost(std::span<const View> views, Pictures originals) {
   shown_ = std::make_unique<ShownSurface>(state_, model_, mesh_index_, scene_, pose_,
-                                          std::vector<View>(views.begin(), views.end()), size_, context);
+                                          std::vector<View>(views.begin(), views.end()), size_, context_);
   values_ =
       std::make_unique<FaceValues>(state_, *shown_, scene_, content_, size_, regions_.get(), mesh_index_);
   cost_ = std::make_unique<ViewCost>(state_, *shown_, *values_,
                                      is_image() ? ViewMeasure::image : ViewMeasure::entropy, size_,
-                                     std::move(originals), context);
+                                     std::move(originals), context_);
 }
 
-void ViewMetric::look(std::span<const VertexField* const> importance, const Context& context) {
-  make_cost(views_, std::move(originals_), context);
+void ViewMetric::look(std::span<const VertexField* const> importance) {
+  make_cost(views_, std::move(originals_));
   const auto count = static_cast<double>(views_.size());
   scale_ = is_image() ? 1 / (3.0 * 255 * 255 * count * size_ * size_) : 1 / count;
   place_.resize(state_.mesh.edges.size());
   noted_.assign(state_.mesh.edges.size(), 0);
-  changed_.assign(state_.mesh.vertices.size(), 0);
+  changed_.assign(state_.mesh.vertices.size(), 1);
   for (std::size_t s = 0; s < importance.size(); ++s) {
     if (importance[s] == nullptr || importance[s]->empty()) continue;
     if (importance_.empty()) importance_.assign(state_.mesh.vertices.size(), 1.0f);
@@ -136,7 +133,7 @@ void ViewMetric::before_collapse(std::uint32_t a, std::uint32_t b, Vec3d p) {
       if (v == a || (at_c.next != a && at_c.previous != a)) faces_.push_back(c / 3);
     }
   }
-  cost_->take_out(faces_);
+  cost_->take_out(faces_, context_);
   cost_->move(a, b, p);
 }
 
@@ -149,7 +146,7 @@ void ViewMetric::after_collapse(std::uint32_t a, std::uint32_t b) {
     const CornerView at_c = state_.mesh.view(c);
     changed_[at_c.next] = changed_[at_c.previous] = collapses_;
   }
-  cost_->put_in(faces_);
+  cost_->put_in(faces_, context_);
   if (!importance_.empty()) importance_[b] = std::max(importance_[a], importance_[b]);
 }
 
