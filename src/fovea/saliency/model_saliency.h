@@ -79,7 +79,8 @@ struct ModelSaliency {
 /// A model without texture is judged by the rest. The sum is scaled to 0 … 1.
 ///
 /// `poses` are models of the same connectivity in other poses. Throws Error(usage) if they do not fit, for
-/// options out of range, or if all weights are 0. Always a number. Parallel; the same bits for any number of
+/// options out of range, or if all weights are 0; Error(unsupported) for triangles beyond what floats hold.
+/// Always a number, and the same in any unit of length. Parallel; the same bits for any number of
 /// threads. Cost: surface_signals.h, `gaussian_averages` per pose, viewing.h.
 ModelSaliency model_saliency(const Model& model, const SaliencyOptions& options, Context& context,
                              std::span<const Model> poses = {});
