@@ -182,7 +182,8 @@ std::vector<Variant> variants() {
       {"yang", {SaliencyWeighting::yang, 1}},
       {"yang, strength 2", {SaliencyWeighting::yang, 2}},
       {"lee, strength 0.2", {SaliencyWeighting::lee, 0.2}},
-      {"lee", {SaliencyWeighting::lee, 1}}};
+      {"lee", {SaliencyWeighting::lee, 1}},
+      {"munaretti", {SaliencyWeighting::munaretti, 1}}};
   for (const auto& [name, which] : presets) {
     for (const auto& [weighting, salient] : weightings)
       all.push_back(weighted(fmt::format("{} | {}", name, weighting), preset(which), salient));
