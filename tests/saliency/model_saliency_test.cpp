@@ -205,6 +205,21 @@ TEST(ModelSaliency, IsANumberBetweenZeroAndOneOnEveryMesh) {
   EXPECT_TRUE(none.saliency.empty());
 }
 
+TEST(ModelSaliency, SaysWhenNothingStandsOut) {
+  const auto told = [](const TriMesh& mesh, SaliencyPreset preset) {
+    Context context;
+    const Model model = test::model_of(mesh);
+    const VertexField saliency = model_saliency(model, with(preset), context).saliency[0];
+    const std::size_t count = test::told(context, "even-saliency");
+    EXPECT_EQ(count == 1, saliency == VertexField(mesh.vertex_count()));
+    return count;
+  };
+  EXPECT_EQ(told(test::torus(12, 6), SaliencyPreset::munaretti), 1u)
+      << "edges are longer than neighbourhoods";
+  EXPECT_EQ(told(test::torus(12, 6), SaliencyPreset::fovea), 0u);
+  EXPECT_EQ(told(test::grid(4, 4), SaliencyPreset::lee), 1u);
+}
+
 TEST(ModelSaliency, IsTheSameInAnyUnit) {
   const Model model = test::model_of(test::torus(40, 20));
   for (const float unit : {std::ldexp(1.0f, 100), std::ldexp(1.0f, -100)}) {  // squares are no floats

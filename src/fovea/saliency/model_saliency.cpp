@@ -146,6 +146,9 @@ class Maker {
       }
     }
     scale_to_one(sum_);
+    if (!surface_.triangles.empty() &&
+        std::all_of(sum_.values().begin(), sum_.values().end(), [](float x) { return x == 0; }))
+      context_.report("even-saliency", "nothing stands out: saliency is 0 everywhere");
     result_.saliency = per_mesh(sum_);
     return std::move(result_);
   }
@@ -275,6 +278,7 @@ class Maker {
   /// Of the first pose by its contrasts, of the others from their own.
   void add_geometry(const std::vector<VertexField>& contrasts, const std::vector<SceneSurface>& scenes) {
     std::vector<VertexField> poses{geometry(contrasts)};
+    if (scenes.size() > 1) keep("geometry-pose-1", poses[0]);
     for (std::size_t i = 1; i < scenes.size(); ++i) {
       context_.advance_or_throw("saliency", static_cast<double>(i) / static_cast<double>(scenes.size()));
       unit_scale(scenes[i].surface);  // throws where it is beyond what floats hold
@@ -287,7 +291,6 @@ class Maker {
                                    recipe_.neighborhood, context_)[0]));
       keep(fmt::format("geometry-pose-{}", i + 1), poses.back());
     }
-    if (poses.size() > 1) keep("geometry-pose-1", poses[0]);
     add_map("geometry", multi_pose_saliency(poses), recipe_.geometry);
   }
 
