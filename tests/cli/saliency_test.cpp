@@ -90,6 +90,18 @@ TEST_F(SaliencyVerb, WritesAHeatMap) {
   EXPECT_TRUE(heat.images.empty());
 }
 
+TEST_F(SaliencyVerb, KeysOfItsReportAreOnThePage) {
+  const std::string page = read_text(FOVEA_COMMAND_PAGE);
+  const nlohmann::json json = saliency({grid_, "-o", out("heat.glb"), "--json"}).json();
+  const auto expect_there = [&](const nlohmann::json& object) {
+    for (const auto& [key, value] : object.items()) EXPECT_THAT(page, HasSubstr("`" + key + "`"));
+  };
+  expect_there(json);
+  expect_there(json["inputs"][0]);
+  expect_there(json["outputs"][0]);
+  expect_there(json["maps"]["saliency"]);
+}
+
 TEST_F(SaliencyVerb, TheExtensionSaysWhatIsWritten) {
   for (const char* name : {"a.png", "a.jpg", "a.webp", "b.PNG"}) {
     const Outcome outcome = saliency({grid_, "-o", out(name), "--size", "32", "--columns", "3"});
