@@ -18,7 +18,7 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Policies = SMS::GarlandHeckbert_plane_policies<Surface, Kernel>;
 
-Surface surface_of(const TriMesh& mesh) {
+Surface surface_from(const TriMesh& mesh) {
   Surface surface;
   std::vector<Surface::Vertex_index> vertices;
   vertices.reserve(mesh.vertex_count());
@@ -44,7 +44,7 @@ std::uint64_t simplify_surface(Surface& surface, double ratio) {
 
 PeerWork cgal_peer(const Model& model, double ratio) {
   auto surfaces = std::make_shared<std::vector<Surface>>();
-  for (const Mesh& mesh : model.meshes) surfaces->push_back(surface_of(mesh.surface));
+  for (const Mesh& mesh : model.meshes) surfaces->push_back(surface_from(mesh.surface));
   return [surfaces, ratio] {
     std::uint64_t triangles = 0;
     for (Surface& surface : *surfaces) triangles += simplify_surface(surface, ratio);

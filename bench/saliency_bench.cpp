@@ -3,6 +3,7 @@
 // saliency_bench --quality [MODEL-NAME...]   simplification with and without it; some minutes
 // saliency_bench --distances [MODEL-NAME...]   mesh saliency by other distances against exact geodesics;
 // minutes
+// saliency_bench --geodesics [MODEL-NAME...]   exact geodesics against CGAL's; minutes
 
 #include <fmt/format.h>
 
@@ -27,6 +28,7 @@
 #include "fovea/surface/local_order.h"
 #include "fovea/surface/scene_surface.h"
 #include "measure.h"
+#include "peers.h"
 #include "subjects.h"
 
 namespace fovea::bench {
@@ -159,6 +161,49 @@ void print_all_distances(const std::vector<Subject>& subjects) {
   }
 }
 
+#ifdef FOVEA_BENCH_CGAL
+void print_same_geodesics(const Subject& subject) {
+  constexpr std::uint32_t kSources = 2;
+  const Context context;
+  const Model model = subject.make();
+  const Surface surface = scene_surface(model, rest_pose(model)).surface;
+  const Adjacency adjacency(surface, context);
+  const GeodesicSurface prepared(surface, adjacency, context);
+  GeodesicSearch search(prepared);
+  const double d = diagonal(surface);
+  std::size_t reached = 0;
+  double most = 0;
+  for (std::uint32_t i = 0; i < kSources; ++i) {
+    const auto source =
+        static_cast<std::uint32_t>((2 * std::uint64_t{i} + 1) * surface.positions.size() / (2 * kSources));
+    const auto found = search.from(source, 0.1 * d);
+    std::vector<std::uint32_t> targets;
+    for (const auto& r : found) targets.push_back(r.vertex);
+    const std::vector<double> expected = cgal_geodesics(surface, source, targets);
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      most = std::max(most, std::abs(found[k].distance - expected[k]) / d);
+    reached += expected.size();
+  }
+  fmt::print("| {} | {} | {} | {:.1e} |\n", subject.name, triangle_count(model), reached, most);
+  std::fflush(stdout);
+}
+
+void print_all_same_geodesics(const std::vector<Subject>& subjects) {
+  fmt::print(
+      "Exact geodesics within a tenth of the diagonal from two vertices against CGAL's: distances compared, "
+      "and "
+      "their largest difference over the diagonal.\n\n"
+      "| model | triangles | distances | largest difference |\n|---|--:|--:|--:|\n");
+  for (const Subject& subject : subjects) {
+    if (triangle_count(subject.make()) <= kMostExact) print_same_geodesics(subject);
+  }
+}
+#else
+void print_all_same_geodesics(const std::vector<Subject>&) {
+  throw Error(ErrorKind::unsupported, "built without CGAL");
+}
+#endif
+
 // --- Pictures -------------------------------------------------------------------------------------------
 
 /// A way to simplify.
@@ -182,7 +227,8 @@ std::vector<Variant> variants() {
       {"yang", {SaliencyWeighting::yang, 1}},
       {"yang, strength 2", {SaliencyWeighting::yang, 2}},
       {"lee, strength 0.2", {SaliencyWeighting::lee, 0.2}},
-      {"lee", {SaliencyWeighting::lee, 1}}};
+      {"lee", {SaliencyWeighting::lee, 1}},
+      {"munaretti", {SaliencyWeighting::munaretti, 1}}};
   for (const auto& [name, which] : presets) {
     for (const auto& [weighting, salient] : weightings)
       all.push_back(weighted(fmt::format("{} | {}", name, weighting), preset(which), salient));
@@ -256,6 +302,7 @@ struct Task {
   int repeats = 3;
   bool quality = false;
   bool distances = false;
+  bool geodesics = false;
   std::vector<std::string> only;
 };
 
@@ -297,6 +344,8 @@ int run(int count, char** words) {
         task.quality = true;
       } else if (std::strcmp(words[i], "--distances") == 0) {
         task.distances = true;
+      } else if (std::strcmp(words[i], "--geodesics") == 0) {
+        task.geodesics = true;
       } else {
         task.only.emplace_back(words[i]);
       }
@@ -305,6 +354,8 @@ int run(int count, char** words) {
       print_quality(chosen(textured_subjects(), task));
     } else if (task.distances) {
       print_all_distances(chosen(scan_subjects(), task));
+    } else if (task.geodesics) {
+      print_all_same_geodesics(chosen(scan_subjects(), task));
     } else {
       print_times(task);
     }

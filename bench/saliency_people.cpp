@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -188,6 +189,12 @@ const char* over_text(const PeopleMap& map) {
   return map.over == PeopleMap::Over::faces ? "faces" : "vertices";
 }
 
+/// Three decimals, without a sign at nothing.
+std::string score_text(double score) {
+  const double rounded = std::round(1000 * score) / 1000;
+  return fmt::format("{:.3f}", rounded == 0 ? 0.0 : rounded);
+}
+
 void print_table(const std::string& title, const std::vector<Predictor>& predictors,
                  const std::vector<Agreement>& scores) {
   fmt::print("**{}**\n\n| predictor |", title);
@@ -195,7 +202,7 @@ void print_table(const std::string& title, const std::vector<Predictor>& predict
   fmt::print("\n|---|--:|--:|--:|--:|--:|--:|\n");
   for (std::size_t p = 0; p < predictors.size(); ++p) {
     fmt::print("| {} |", predictors[p].name);
-    for (const Measure& measure : kMeasures) fmt::print(" {:.3f} |", scores[p].*measure.value);
+    for (const Measure& measure : kMeasures) fmt::print(" {} |", score_text(scores[p].*measure.value));
     fmt::print("\n");
   }
   fmt::print("\n");

@@ -81,6 +81,7 @@ class Saliency : public Verb {
         session.phase("read", [&] { return read_model(inputs_[0], read_options_, session.context); });
     const std::vector<Model> poses =
         session.phase("poses", [&] { return read_poses(model, session.context); });
+    report_inputs(model, poses, session);
     if (kind_ == OutputKind::texture) images_ = texture_space_images(model);
     check_outputs(kWhole);
     ModelSaliency found =
@@ -156,6 +157,12 @@ class Saliency : public Verb {
       }
     }
     return poses;
+  }
+
+  void report_inputs(const Model& model, const std::vector<Model>& poses, Session& session) const {
+    Json& json = session.report["inputs"] = Json::array();
+    for (std::size_t i = 0; i < inputs_.size(); ++i)
+      json.push_back(file_json(inputs_[i], measure_input(inputs_[i], i == 0 ? model : poses[i - 1])));
   }
 
   std::vector<const SaliencyMap*> chosen(const ModelSaliency& found) const {
@@ -248,7 +255,8 @@ class Saliency : public Verb {
   }
 
   Json statistics_json(const Model& model, const ModelSaliency& found, Session& session) const {
-    const SceneSurface scene = scene_surface(model, pose_of(model, options_.pose));
+    SceneSurface scene = scene_surface(model, pose_of(model, options_.pose));
+    scale(scene.surface, unit_scale(scene.surface));  // areas are floats
     const VertexField areas =
         vertex_areas(scene.surface, Adjacency(scene.surface, session.context), session.context);
     Json json = Json::object();
@@ -267,7 +275,6 @@ class Saliency : public Verb {
   }
 
   void tell(Session& session, const ModelSaliency& found, const Json& statistics) const {
-    session.report["inputs"] = inputs_;
     const Json written = session.report["outputs"];
     session.report["textured"] = found.textured;
     session.report["poses"] = found.poses;

@@ -18,6 +18,12 @@ TEST(Help, NamesAllVerbs) {
   EXPECT_EQ(fovea({"-h"}).out, help.out);
 }
 
+TEST(Help, TheCommandLinesPageHasAllVerbs) {
+  const std::string page = read_text(FOVEA_COMMAND_PAGE);
+  for (const char* verb : {"info", "simplify", "saliency", "compare", "render", "sample"})
+    EXPECT_THAT(page, HasSubstr("| `" + std::string(verb) + "` | "));
+}
+
 TEST(Help, WithoutArgumentsIsAUsageErrorThatHelps) {
   const Outcome nothing = fovea({});
   EXPECT_EQ(nothing.code, 2);

@@ -67,7 +67,9 @@ TEST_F(SaliencyVerb, WritesAHeatMap) {
   const nlohmann::json json = outcome.json();
   ASSERT_TRUE(json.is_object()) << outcome.out;
   EXPECT_EQ(json["verb"], "saliency");
-  EXPECT_EQ(json["inputs"], nlohmann::json::array({grid_}));
+  ASSERT_EQ(json["inputs"].size(), 1u);
+  EXPECT_EQ(json["inputs"][0]["path"], grid_);
+  EXPECT_EQ(json["inputs"][0]["bytes"], std::filesystem::file_size(grid_));
   EXPECT_EQ(json["outputs"].size(), 1u);
   EXPECT_EQ(json["outputs"][0]["path"], out("heat.glb"));
   EXPECT_EQ(json["outputs"][0]["map"], "saliency");
@@ -86,6 +88,18 @@ TEST_F(SaliencyVerb, WritesAHeatMap) {
   const Model heat = model(out("heat.glb"));
   EXPECT_NE(heat.meshes[0].surface.find(Semantic::color), nullptr);
   EXPECT_TRUE(heat.images.empty());
+}
+
+TEST_F(SaliencyVerb, KeysOfItsReportAreOnThePage) {
+  const std::string page = read_text(FOVEA_COMMAND_PAGE);
+  const nlohmann::json json = saliency({grid_, "-o", out("heat.glb"), "--json"}).json();
+  const auto expect_there = [&](const nlohmann::json& object) {
+    for (const auto& [key, value] : object.items()) EXPECT_THAT(page, HasSubstr("`" + key + "`"));
+  };
+  expect_there(json);
+  expect_there(json["inputs"][0]);
+  expect_there(json["outputs"][0]);
+  expect_there(json["maps"]["saliency"]);
 }
 
 TEST_F(SaliencyVerb, TheExtensionSaysWhatIsWritten) {
@@ -204,7 +218,8 @@ TEST_F(SaliencyVerb, FilesArePosesOfOneModel) {
   const Outcome outcome = saliency({flat, bent, more, "-o", out("heat.ply"), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["poses"], nlohmann::json::array({"file 1", "file 2", "file 3"}));
-  EXPECT_EQ(outcome.json()["inputs"].size(), 3u);
+  ASSERT_EQ(outcome.json()["inputs"].size(), 3u);
+  EXPECT_EQ(outcome.json()["inputs"][1]["path"], bent);
 }
 
 TEST_F(SaliencyVerb, APoseThatDoesNotFitIsNamed) {
@@ -354,6 +369,25 @@ TEST_F(SaliencyVerb, AFileOfAMapIsNoInputEither) {
   EXPECT_THAT(outcome.err, HasSubstr("the output is an input"));
   EXPECT_EQ(read_text(input), before);
   EXPECT_THAT(folder_.names(), ElementsAre("x-geometry.glb"));
+}
+
+TEST_F(SaliencyVerb, ModelsOfAnySizeHaveNumbers) {
+  for (const char* size : {"1e38", "1e-30"}) {
+    const std::string one(size),
+        square = folder_.write("square.obj", "v 0 0 0\nv " + one + " 0 0\nv " + one + " " + one + " 0\nv 0 " +
+                                                 one + " " + one + "\nf 1 2 3\nf 1 3 4\n");
+    for (const char* name : {"x.glb", "x.csv", "x.png"}) {
+      const Outcome outcome =
+          saliency({square, "-o", out(name), "--map", "all", "--size", "16", "--force", "--json"});
+      EXPECT_EQ(outcome.code, 0) << name << outcome.err;
+      for (const auto& [map, statistics] : outcome.json()["maps"].items()) {
+        for (const auto& [key, number] : statistics.items()) EXPECT_TRUE(number.is_number()) << map << key;
+      }
+    }
+    const std::vector<float> field = read_field(out("x.csv"));
+    EXPECT_EQ(*std::min_element(field.begin(), field.end()), 0);
+    EXPECT_EQ(*std::max_element(field.begin(), field.end()), 1);
+  }
 }
 
 TEST_F(SaliencyVerb, PointsAloneHaveNone) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/base/random.h"
 #include "fovea/saliency/contrast.h"
 #include "oracle/saliency_oracle.h"
 #include "support/meshes.h"
@@ -47,44 +46,6 @@ Surface two_spheres(bool dented) {
     surface.triangles.push_back(other);
   }
   return surface;
-}
-
-TEST(PromotePeaks, MultipliesByWhatTheHighestPeakIsAboveTheOthers) {
-  //  A strip of five squares; peaks of height 1, 0.5 and 0.25 on its lower side.
-  const Surface surface = surface_of(test::grid(6, 1));
-  VertexField field(14, 0.0f);
-  field.values()[0] = 2;
-  field.values()[2] = 1;
-  field.values()[5] = 0.5f;
-  const Adjacency adjacency(surface, Context());
-  const VertexField promoted = promote_peaks(field, adjacency);
-  const double factor = (1 - 0.375) * (1 - 0.375);  // the others: 0.5 and 0.25
-  EXPECT_NEAR(promoted.values()[0], factor, 1e-6);
-  EXPECT_NEAR(promoted.values()[2], 0.5 * factor, 1e-6);
-  EXPECT_NEAR(promoted.values()[5], 0.25 * factor, 1e-6);
-  EXPECT_EQ(promoted.values()[13], 0);
-}
-
-TEST(PromotePeaks, OnePeakStaysAndNoneIsNothing) {
-  const Surface surface = surface_of(test::grid(6, 1));
-  const Adjacency adjacency(surface, Context());
-  VertexField field(14, 1.0f);
-  const VertexField even = promote_peaks(field, adjacency);
-  for (const float x : even.values()) EXPECT_EQ(x, 0);
-  field.values()[3] = 5;
-  EXPECT_EQ(promote_peaks(field, adjacency).values()[3], 1);
-  EXPECT_TRUE(promote_peaks(VertexField(), Adjacency(Surface(), Context())).empty());
-}
-
-TEST(PromotePeaks, EqualsTheWords) {
-  const Surface surface = bumpy_sphere(3);
-  Random random(2);
-  VertexField field(surface.positions.size());
-  for (float& x : field.values()) x = static_cast<float>(random.uniform(3, 8));
-  const VertexField promoted = promote_peaks(field, Adjacency(surface, Context())),
-                    expected = test::promoted(field, surface);
-  for (std::size_t v = 0; v < field.size(); ++v)
-    EXPECT_NEAR(promoted.values()[v], expected.values()[v], 1e-6);
 }
 
 TEST(MeshSaliency, LeeEqualsTheFormulas) {

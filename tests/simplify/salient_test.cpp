@@ -10,6 +10,7 @@
 #include "fovea/io/image_codec.h"
 #include "fovea/sample/sample.h"
 #include "fovea/simplify/auto_saliency.h"
+#include "oracle/saliency_oracle.h"
 #include "support/meshes.h"
 #include "support/reading.h"
 
@@ -17,6 +18,9 @@ namespace fovea {
 namespace {
 
 using test::expect_error;
+
+constexpr SaliencyWeighting kWeightings[] = {SaliencyWeighting::yang, SaliencyWeighting::lee,
+                                             SaliencyWeighting::munaretti};
 
 Importance importance(const Model& model, const std::vector<VertexField>& saliency,
                       const SalientOptions& options = {}) {
@@ -43,45 +47,16 @@ std::vector<double> areas(const TriMesh& mesh) {
   return result;
 }
 
-/// The papers' weights, literally, and scaled to a mean of 1.
-std::vector<double> literal(const TriMesh& mesh, const VertexField& saliency, const SalientOptions& options) {
-  const std::vector<double> area = areas(mesh);
-  double whole = 0;
-  for (const double a : area) whole += a;
-  // The 30th percentile: the least value with more than that share of the area at or below it.
-  double threshold = 1;
-  for (const float candidate : saliency.values()) {
-    double below = 0;
-    for (std::size_t v = 0; v < area.size(); ++v) below += saliency.values()[v] <= candidate ? area[v] : 0;
-    if (below > 0.3 * whole) threshold = std::min(threshold, static_cast<double>(candidate));
-  }
-  std::vector<double> omega;
-  for (const float s : saliency.values()) {
-    const double x = std::max(static_cast<double>(s), 0.001);
-    const double amplifier = options.weighting == SaliencyWeighting::yang ? 20 : 100;
-    omega.push_back(static_cast<double>(s) >= threshold ? amplifier * x : x);
-  }
-  const double highest = *std::max_element(omega.begin(), omega.end());
-  double sum = 0;
-  for (std::size_t v = 0; v < omega.size(); ++v) {
-    if (options.weighting == SaliencyWeighting::yang) omega[v] = 1 + std::pow(omega[v] / highest, 3);
-    omega[v] = std::pow(omega[v], options.strength);
-    sum += area[v] * omega[v];
-  }
-  for (double& w : omega) w *= whole / sum;
-  return omega;
-}
-
 TEST(Salient, WeightsAreThoseOfThePapers) {
   // Areas are added up as floats there and in doubles here, so that weights agree to some 1e-7 × #V; no
   // vertex of these fields lies so near the percentile that it could fall on its other side.
   for (const TriMesh& mesh : {test::wavy_grid(14, 10, 0.2), test::torus(20, 10)}) {
     const Model model = test::model_of(mesh);
     const auto saliency = random_saliency(model);
-    for (const SaliencyWeighting weighting : {SaliencyWeighting::yang, SaliencyWeighting::lee}) {
+    for (const SaliencyWeighting weighting : kWeightings) {
       for (const double strength : {0.5, 1.0, 2.0}) {
         const SalientOptions options{weighting, strength};
-        const auto expected = literal(mesh, saliency[0], options);
+        const auto expected = test::salient_weights(saliency[0], surface_of(mesh), options);
         const Importance found = importance(model, saliency, options);
         ASSERT_EQ(found.size(), 1u);
         ASSERT_EQ(found[0].size(), expected.size());
@@ -97,7 +72,7 @@ TEST(Salient, TheMeanOverTheSceneIsOne) {
   Model model = test::model_of({test::torus(20, 10), test::icosphere(2)});
   model.nodes[0].scale = {10, 10, 10};
   const auto saliency = random_saliency(model);
-  for (const SaliencyWeighting weighting : {SaliencyWeighting::yang, SaliencyWeighting::lee}) {
+  for (const SaliencyWeighting weighting : kWeightings) {
     const Importance found = importance(model, saliency, {weighting, 1});
     double sum = 0, area = 0;
     for (std::size_t m = 0; m < 2; ++m) {
@@ -124,9 +99,32 @@ TEST(Salient, YangIsGentleAndLeeIsNot) {
   EXPECT_GT(spread(SaliencyWeighting::lee), 300) << "100 times 1 against 0.3 at most";
 }
 
+TEST(Salient, MunarettiAmplifiesThePeaksAlone) {
+  const Model model = test::model_of(test::torus(20, 10));
+  std::vector<VertexField> saliency{VertexField(model.meshes[0].surface.vertex_count(), 0.5f)};
+  saliency[0].values()[3] = 0.9f;
+  saliency[0].values()[4] = 0.64f;
+  saliency[0].values()[5] = 0.62f;  // 0.7 times the greatest is 0.63
+  const Importance found = importance(model, saliency, {SaliencyWeighting::munaretti, 1});
+  const float rest = found[0].values()[0];
+  EXPECT_NEAR(found[0].values()[3] / rest, 100 * 0.9 / 0.5, 1e-3);
+  EXPECT_NEAR(found[0].values()[4] / rest, 100 * 0.64 / 0.5, 1e-3);
+  EXPECT_NEAR(found[0].values()[5] / rest, 0.62 / 0.5, 1e-5);
+}
+
+TEST(Salient, IsTheSameInAnyUnit) {
+  const Model model = test::model_of(test::torus(20, 10));
+  const auto saliency = random_saliency(model);
+  for (const float unit : {std::ldexp(1.0f, 100), std::ldexp(1.0f, -100)}) {
+    Model other = model;
+    for (Vec3f& p : other.meshes[0].surface.positions) p = p * unit;
+    EXPECT_EQ(importance(model, saliency), importance(other, saliency));
+  }
+}
+
 TEST(Salient, WithoutStrengthAllAreAlike) {
   const Model model = test::model_of({test::torus(20, 10), test::cube()});
-  for (const SaliencyWeighting weighting : {SaliencyWeighting::yang, SaliencyWeighting::lee}) {
+  for (const SaliencyWeighting weighting : kWeightings) {
     for (const VertexField& field : importance(model, random_saliency(model), {weighting, 0})) {
       for (const float w : field.values()) EXPECT_EQ(w, 1);
     }
@@ -147,7 +145,7 @@ TEST(Salient, TheStrongestWeightsAreStillNumbers) {
   std::fill_n(saliency[0].values().begin(), 20, 0.0f);  // below the percentile
   SimplifyOptions options;
   options.ratio = 0.3;
-  for (const SaliencyWeighting weighting : {SaliencyWeighting::yang, SaliencyWeighting::lee}) {
+  for (const SaliencyWeighting weighting : kWeightings) {
     const Importance found = importance(model, saliency, {weighting, 10});
     for (const float w : found[0].values()) EXPECT_TRUE(w > 0 && std::isfinite(w)) << w;
     Context context;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "fovea/base/random.h"
+#include "oracle/saliency_oracle.h"
 #include "support/meshes.h"
 
 namespace fovea {
@@ -52,6 +53,17 @@ TEST(Adjacency, ListsCornersAndNeighborsInOrder) {
   EXPECT_TRUE(adjacency.neighbors(4).empty());
   EXPECT_NEAR(diagonal(surface), std::sqrt(2), 1e-12) << "the vertex alone does not count";
   EXPECT_EQ(diagonal(Surface()), 0);
+}
+
+TEST(Curvature, EqualsTheFormula) {
+  for (const TriMesh& mesh :
+       {test::torus(20, 10), test::wavy_grid(14, 10, 0.2), test::open_cylinder(9, 4), test::cube(),
+        test::non_manifold_edge(), test::bow_tie(), test::duplicate_faces(), test::sliver_strip(8)}) {
+    const Surface surface = surface_of(mesh);
+    const VertexField found = curvature(surface), expected = test::taubin_curvature(surface);
+    for (std::size_t v = 0; v < found.size(); ++v)
+      EXPECT_NEAR(found.values()[v], expected.values()[v], 1e-5 * (1 + std::abs(expected.values()[v])));
+  }
 }
 
 TEST(Curvature, OfASphereIsOneOverItsRadius) {

@@ -141,6 +141,24 @@ TEST(Neighborhood, WindowEqualsTheWords) {
   EXPECT_EQ(results[4], straight[4]);  // no edge leaves the largest sphere
 }
 
+TEST(Neighborhood, WindowWithWeightsEqualsTheWords) {
+  const Surface surface = uneven_sheet(20);
+  const VertexField field = noise(surface.positions.size());
+  VertexField weights(field.size());
+  for (std::size_t v = 0; v < field.size(); ++v) weights.values()[v] = 1 + static_cast<float>(v % 7);
+  const Context context;
+  const double radii[] = {0.04, 0.08};
+  const double falls[] = {1, 1.2};
+  const auto results =
+      gaussian_averages(surface, Adjacency(surface, context), {&field, 1}, radii,
+                        {DistanceKind::window, 1, VertexWeight::one}, context, {&weights, 1})[0];
+  for (std::size_t i = 0; i < 2; ++i) {
+    const VertexField expected = test::window_average(field, surface, radii[i], falls[i], weights);
+    for (std::size_t v = 0; v < field.size(); ++v)
+      EXPECT_NEAR(results[i].values()[v], expected.values()[v], 1e-5) << i << " " << v;
+  }
+}
+
 TEST(Neighborhood, FieldsTogetherAreAsEachAlone) {
   const Surface surface = uneven_sheet(12);
   const Context context;
@@ -186,6 +204,25 @@ TEST(Neighborhood, DiffusionCountsVerticesAsTheOthersDo) {
     const VertexField filtered = average(DistanceKind::diffusion, weight);
     EXPECT_LT(difference(filtered, average(DistanceKind::euclidean, weight)),
               0.3 * difference(filtered, average(DistanceKind::euclidean, other)));
+  }
+}
+
+TEST(Neighborhood, DiffusionEqualsTheFormula) {
+  // Uneven, but without obtuse angles: negative cotangents count as 0.
+  Surface surface = surface_of(test::icosphere(2));
+  for (Vec3f& p : surface.positions) p = p * (1 + 0.1f * p.x + 0.05f * p.y * p.z);
+  const VertexField field = noise(surface.positions.size());
+  const Context context;
+  const Adjacency adjacency(surface, context);
+  const double sigmas[] = {0.2, 0.5};
+  for (const double cutoff : {1.0, 2.0}) {
+    const auto results = gaussian_averages(surface, adjacency, {&field, 1}, sigmas,
+                                           {DistanceKind::diffusion, cutoff, VertexWeight::area}, context)[0];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const VertexField expected = test::spectral_average(field, surface, sigmas[i], cutoff);
+      for (std::size_t v = 0; v < field.size(); ++v)
+        EXPECT_NEAR(results[i].values()[v], expected.values()[v], 1e-4) << cutoff << " " << i << " " << v;
+    }
   }
 }
 

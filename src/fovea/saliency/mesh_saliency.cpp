@@ -34,9 +34,16 @@ MeshSaliency saliency_in_order(const Surface& surface, const MeshSaliencyOptions
 MeshSaliency mesh_saliency(const Surface& surface, const MeshSaliencyOptions& options,
                            const Context& context) {
   const LocalOrder order = local_order(surface);
-  MeshSaliency result = saliency_in_order(reordered(surface, order), options, context);
-  result.curvature = in_own_order(result.curvature, order);
-  for (VertexField& contrast : result.contrasts) contrast = in_own_order(contrast, order);
+  const double unit = unit_scale(surface);
+  Surface worked = reordered(surface, order);
+  scale(worked, unit);
+  MeshSaliency result = saliency_in_order(worked, options, context);
+  const auto own = [&](VertexField field) {
+    for (float& x : field.values()) x = static_cast<float>(unit * static_cast<double>(x));
+    return in_own_order(field, order);
+  };
+  result.curvature = own(result.curvature);
+  for (VertexField& contrast : result.contrasts) contrast = own(contrast);
   result.saliency = in_own_order(result.saliency, order);
   return result;
 }

@@ -29,8 +29,9 @@ struct MeshSaliency {
 };
 
 /// Centre-surround contrast of mean curvature over five scales, peaks promoted at each, added up (Lee et al.
-/// 2005, Munaretti 2007). A number everywhere; 0 on vertices without triangles. Works on the surface in a
-/// local order (local_order.h). Cost: that of `gaussian_averages`.
+/// 2005, Munaretti 2007). A number everywhere, and the same in any unit of length; 0 on vertices without
+/// triangles. Works on the surface in a local order (local_order.h). Throws Error(unsupported) for triangles
+/// beyond what floats hold. Cost: that of `gaussian_averages`.
 MeshSaliency mesh_saliency(const Surface& surface, const MeshSaliencyOptions& options,
                            const Context& context);
 

@@ -131,7 +131,8 @@ class Maker {
     const std::vector<SceneSurface> scenes = pose_scenes(other_poses);
     scene_ = &scenes[0];
     order_ = local_order(scene_->surface);
-    surface_ = reordered(scene_->surface, order_);
+    unit_ = unit_scale(scene_->surface);
+    surface_ = in_work(scene_->surface);
     const Adjacency adjacency(surface_, context_);
     adjacency_ = &adjacency;
     areas_ = vertex_areas(surface_, adjacency, context_);
@@ -145,11 +146,21 @@ class Maker {
       }
     }
     scale_to_one(sum_);
+    if (!surface_.triangles.empty() &&
+        std::all_of(sum_.values().begin(), sum_.values().end(), [](float x) { return x == 0; }))
+      context_.report("even-saliency", "nothing stands out: saliency is 0 everywhere");
     result_.saliency = per_mesh(sum_);
     return std::move(result_);
   }
 
  private:
+  /// In the order and of the size to work in.
+  Surface in_work(const Surface& surface) const {
+    Surface result = reordered(surface, order_);
+    scale(result, unit_);
+    return result;
+  }
+
   /// The scene in every pose that counts.
   std::vector<SceneSurface> pose_scenes(std::span<const Model> others) {
     std::vector<SceneSurface> scenes;
@@ -197,9 +208,10 @@ class Maker {
     if (!(pairs[0].center > 0)) return;  // no area, no surroundings
     const std::vector<std::vector<VertexField>> contrasts = contrasts_of(signals, pairs);
     for (std::size_t i = 0; i < signals.size(); ++i) {
-      keep(names[i], signals[i]);
+      const double own = names[i] == "curvature" ? unit_ : 1;  // one over a length
+      keep(names[i], signals[i], own);
       for (std::size_t k = 0; k < pairs.size(); ++k)
-        keep(fmt::format("{}-contrast-{}", names[i], k + 1), contrasts[i][k]);
+        keep(fmt::format("{}-contrast-{}", names[i], k + 1), contrasts[i][k], own);
     }
     const auto contrast = [&](const std::string& name) -> const std::vector<VertexField>* {
       const auto at = std::find(names.begin(), names.end(), name);
@@ -266,9 +278,11 @@ class Maker {
   /// Of the first pose by its contrasts, of the others from their own.
   void add_geometry(const std::vector<VertexField>& contrasts, const std::vector<SceneSurface>& scenes) {
     std::vector<VertexField> poses{geometry(contrasts)};
+    if (scenes.size() > 1) keep("geometry-pose-1", poses[0]);
     for (std::size_t i = 1; i < scenes.size(); ++i) {
       context_.advance_or_throw("saliency", static_cast<double>(i) / static_cast<double>(scenes.size()));
-      const Surface posed = reordered(scenes[i].surface, order_);
+      unit_scale(scenes[i].surface);  // throws where it is beyond what floats hold
+      const Surface posed = in_work(scenes[i].surface);
       const VertexField curvature = mean_curvature(posed, *adjacency_, context_);
       const VertexField areas = vertex_areas(posed, *adjacency_, context_);
       const double area = std::accumulate(areas.values().begin(), areas.values().end(), 0.0);
@@ -277,7 +291,6 @@ class Maker {
                                    recipe_.neighborhood, context_)[0]));
       keep(fmt::format("geometry-pose-{}", i + 1), poses.back());
     }
-    if (poses.size() > 1) keep("geometry-pose-1", poses[0]);
     add_map("geometry", multi_pose_saliency(poses), recipe_.geometry);
   }
 
@@ -302,20 +315,26 @@ class Maker {
 
   void add_viewing() {
     if (recipe_.height > 0)
-      add_map("height", along(surface_, direction(options_.ring.up), context_), recipe_.height);
+      add_map("height", along(surface_, direction(options_.ring.up), context_), recipe_.height, 1 / unit_);
     if (recipe_.visibility > 0)
       add_map("visibility", visibility(surface_, *adjacency_, options_.ring, context_), recipe_.visibility);
-    if (recipe_.extremity > 0) add_map("extremity", far_from_center(surface_, context_), recipe_.extremity);
+    if (recipe_.extremity > 0)
+      add_map("extremity", far_from_center(surface_, context_), recipe_.extremity, 1 / unit_);
   }
 
-  void add_map(const std::string& name, const VertexField& map, double weight) {
-    keep(name, map);
+  /// `own` as for `keep`.
+  void add_map(const std::string& name, const VertexField& map, double weight, double own = 1) {
+    keep(name, map, own);
     add(sum_, recipe_.by_peaks ? promoted(map) : between_percentiles(map, areas_), weight);
   }
 
   VertexField promoted(const VertexField& field) const { return promote_peaks(field, *adjacency_); }
 
-  void keep(const std::string& name, const VertexField& field) {
+  /// `own` times the field is what it is in the model's own unit.
+  void keep(const std::string& name, VertexField field, double own = 1) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    for (float& x : field.values())
+      x = static_cast<float>(std::clamp(own * static_cast<double>(x), -kMost, kMost));
     result_.maps.push_back({name, per_mesh(field)});
   }
   std::vector<VertexField> per_mesh(const VertexField& field) const {
@@ -337,6 +356,7 @@ class Maker {
   Recipe recipe_;
   const SceneSurface* scene_ = nullptr;  // the first pose
   LocalOrder order_;
+  double unit_ = 1;  // makes the first pose about 1 large
   Surface surface_;
   const Adjacency* adjacency_ = nullptr;
   VertexField areas_;

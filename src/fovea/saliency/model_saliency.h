@@ -76,10 +76,13 @@ struct ModelSaliency {
 /// - `fovea`: the scales of `lee`; maps are scaled between their 2nd and 98th percentile by area rather than
 /// by
 ///   their peaks, then added.
-/// A model without texture is judged by the rest. The sum is scaled to 0 … 1.
+/// A model without texture is judged by the rest. The sum is scaled to 0 … 1. If it is the same everywhere,
+/// as on a plane or where neighbourhoods hold no second vertex, saliency is 0, which is reported to `context`
+/// as "even-saliency".
 ///
 /// `poses` are models of the same connectivity in other poses. Throws Error(usage) if they do not fit, for
-/// options out of range, or if all weights are 0. Always a number. Parallel; the same bits for any number of
+/// options out of range, or if all weights are 0; Error(unsupported) for triangles beyond what floats hold.
+/// Always a number, and the same in any unit of length. Parallel; the same bits for any number of
 /// threads. Cost: surface_signals.h, `gaussian_averages` per pose, viewing.h.
 ModelSaliency model_saliency(const Model& model, const SaliencyOptions& options, Context& context,
                              std::span<const Model> poses = {});

@@ -15,6 +15,8 @@ enum class SaliencyWeighting {
   yang,  ///< 1 + (ω / max ω)³ with ω = 20 S from the 30th percentile up, S below (Yang et al. 2016, eq.
          ///< 10–11).
   lee,   ///< 100 S from the 30th percentile up, S below (Lee et al. 2005, section 5).
+  munaretti,  ///< 100 S from 0.7 of the greatest up, S below: what several poses have to say (Munaretti
+              ///< 2007, section 4.1).
 };
 
 struct SalientOptions {

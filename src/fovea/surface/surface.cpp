@@ -1,8 +1,11 @@
 #include "fovea/surface/surface.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
+#include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
 
 namespace fovea {
@@ -33,6 +36,27 @@ double diagonal(const Surface& surface) {
     for (const std::uint32_t v : triangle) box.add(surface.position(v));
   }
   return surface.triangles.empty() ? 0 : box.diagonal();
+}
+
+double unit_scale(const Surface& surface) {
+  const double d = diagonal(surface);
+  for (const auto& triangle : surface.triangles) {
+    for (const std::uint32_t v : triangle) {
+      const Vec3f p = surface.positions[v];
+      if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+        throw Error(ErrorKind::unsupported, "a corner of a triangle lies beyond what floats hold", {},
+                    "make the model smaller");
+    }
+  }
+  return d > 0 ? std::ldexp(1.0, -std::ilogb(d)) : 1;
+}
+
+void scale(Surface& surface, double factor) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const auto scaled = [&](float x) {
+    return static_cast<float>(std::clamp(factor * static_cast<double>(x), -kMost, kMost));
+  };
+  for (Vec3f& p : surface.positions) p = {scaled(p.x), scaled(p.y), scaled(p.z)};
 }
 
 Adjacency::Adjacency(const Surface& surface, const Context& context) {

@@ -26,6 +26,14 @@ Surface surface_of(const TriMesh& mesh);
 /// Diagonal of the box around the points that triangles use; 0 without triangles. O(#F).
 double diagonal(const Surface& surface);
 
+/// The power of two by which points are to be multiplied for the diagonal to lie between 1 and 2, so that
+/// squares of lengths are numbers whatever the unit; it costs no precision. 1 without a diagonal. O(#F).
+///
+/// Throws Error(unsupported) if a triangle has a corner that is not finite.
+double unit_scale(const Surface& surface);
+/// Multiplies the points; those beyond what floats hold, which no triangle has, stay at its end. O(#V).
+void scale(Surface& surface, double factor);
+
 /// What meets at each vertex of a surface: its corners (3 · triangle + 0, 1 or 2) and its neighbours along
 /// edges, both in rising order.
 class Adjacency {
