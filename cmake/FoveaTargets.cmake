@@ -23,9 +23,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_G
   target_compile_options(fovea_warnings INTERFACE -Wno-restrict)
 endif()
 
-# Same bits on any machine: no contraction into fused multiply-adds that depends on the target.
+# Same bits on any machine: no contraction into fused multiply-adds that depends on the target. Nobody reads
+# errno or traps after arithmetic; without that, roots and choices become vector instructions.
 add_library(fovea_floating_point INTERFACE)
-target_compile_options(fovea_floating_point INTERFACE -ffp-contract=off)
+target_compile_options(fovea_floating_point INTERFACE -ffp-contract=off -fno-math-errno -fno-trapping-math)
 
 # fovea_module(name DEPENDS modules... LIBRARIES private libraries... HEADER_LIBRARIES libraries...
 #              HEADERS public headers...)
