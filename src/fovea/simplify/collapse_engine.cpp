@@ -332,15 +332,26 @@ void Engine::fetch_surroundings() const {
     prefetch(&mesh_.faces[c / 3]);
     if (!state_.channels.empty()) prefetch(&state_.channels.front().corner_value[c]);
   });
-  // The vertices and values next to each corner: around a vertex that is all of them, once.
+  // The vertices, edges and values next to each corner: around a vertex that is all of them, once.
   for_corners([&](std::uint32_t c) {
-    prefetch(&mesh_.vertices[mesh_.view(c).next]);
+    const CornerView at_c = mesh_.view(c);
+    prefetch(&mesh_.vertices[at_c.next]);
+    prefetch(&mesh_.edges[at_c.to_next]);
     for (const Channel& channel : state_.channels) {
       if (!channel.is_uv()) continue;
       const std::uint32_t value = channel.corner_value[CollapseMesh::next(c)];
       if (value != kInvalid) prefetch(channel.value(value));
     }
   });
+  // What the triangles on the edges leave when they go.
+  for (const Due& due : batch_) {
+    if (due.item >= edge_count_ || !mesh_.edges[due.item].is_listed()) continue;
+    for (const std::uint32_t half_edge : mesh_.edges[due.item].half_edges) {
+      if (half_edge == kInvalid) continue;
+      prefetch(mesh_.ring(mesh_.vertex(CollapseMesh::previous(half_edge))).data());
+      prefetch(&state_.mesh_face[half_edge / 3]);
+    }
+  }
 }
 
 /// Collapses the edge if that is legal at about the cost that it was queued for; else puts it back.
