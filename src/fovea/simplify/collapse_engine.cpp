@@ -260,7 +260,7 @@ void Engine::take_batch() {
     if (due.item < edge_count_) cost_.fetch_values(due.item);
   }
   for (const Due& due : batch_) {
-    if (due.item < edge_count_) cost_.fetch_joined(due.item);
+    if (due.item < edge_count_) cost_.fetch_seams(due.item);
   }
 }
 
