@@ -141,15 +141,19 @@ void Engine::fill_queue() {
 }
 
 void Engine::price_edges() {
-  std::vector<float> cost(edge_count_);
-  parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      const auto edge = static_cast<std::uint32_t>(e);
-      cost[e] = static_cast<float>(cost_.best_place(edge, cost_.quadric(edge)).cost);
+  constexpr std::uint32_t kStep = 1 << 17;
+  std::vector<float> cost(std::min(edge_count_, kStep));
+  for (std::uint32_t first = 0; first < edge_count_; first += kStep) {
+    const std::uint32_t count = std::min(edge_count_ - first, kStep);
+    parallel_for(context_, count, 1 << 13, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto e = first + static_cast<std::uint32_t>(i);
+        cost[i] = static_cast<float>(cost_.best_place(e, cost_.quadric(e)).cost);
+      }
+    });
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (std::isfinite(cost[i])) queue_.set(first + i, cost[i]);
     }
-  });
-  for (std::uint32_t e = 0; e < edge_count_; ++e) {
-    if (std::isfinite(cost[e])) queue_.set(e, cost[e]);
   }
 }
 
@@ -200,13 +204,23 @@ void Engine::price_by_views(std::span<const std::uint32_t> edges) {
   }
 }
 
-/// Room for the steps to the target, if there is one: most take two triangles.
+/// Room for the steps to the target, if there is one: most take two triangles, and one value of each channel.
 void Engine::reserve_record() {
   const std::uint64_t faces = mesh_.live_faces > target_ ? mesh_.live_faces - target_ : 0;
   outcome_.record.triangles_before = mesh_.live_faces;
   if (target_ == 0) return;
+  const std::uint64_t steps = faces / 2 + faces / 32;
   outcome_.record.removed_faces.reserve(faces + 1);
-  outcome_.record.steps.reserve(faces / 2 + faces / 32);
+  outcome_.record.steps.reserve(steps);
+  std::uint64_t values = 0, floats = 0;
+  for (const Channel& channel : state_.channels) {
+    const std::uint64_t size = channel.layer_value.size();
+    values += size;
+    floats += size * static_cast<std::uint64_t>(channel.width);
+  }
+  outcome_.record.joins.reserve(values);
+  outcome_.record.writes.reserve(values);
+  outcome_.record.floats.reserve(floats);
 }
 
 // --- The loop --------------------------------------------------------------------------------------
