@@ -131,18 +131,22 @@ void Engine::fill_queue() {
 
 /// Prices all edges by the quadric error; where views decide that is the least that they can cost.
 void Engine::price_edges() {
-  std::vector<float> cost(edge_count_, std::numeric_limits<float>::infinity());
-  parallel_for(context_, edge_count_, 1 << 13, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      const auto edge = static_cast<std::uint32_t>(e);
-      if (!mesh_.edge_alive(edge)) continue;
-      cost[e] = static_cast<float>(cost_.best_place(edge, cost_.quadric(edge)).cost);
+  constexpr std::uint32_t kStep = 1 << 17;
+  std::vector<float> cost(std::min(edge_count_, kStep));
+  for (std::uint32_t first = 0; first < edge_count_; first += kStep) {
+    const std::uint32_t count = std::min(edge_count_ - first, kStep);
+    parallel_for(context_, count, 1 << 13, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto e = first + static_cast<std::uint32_t>(i);
+        cost[i] = mesh_.edge_alive(e) ? static_cast<float>(cost_.best_place(e, cost_.quadric(e)).cost)
+                                      : std::numeric_limits<float>::infinity();
+      }
+    });
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!std::isfinite(cost[i])) continue;
+      const auto quadric_cost = static_cast<double>(cost[i]);
+      queue_.set(first + i, views_ == nullptr ? quadric_cost : ViewMetric::least_price(quadric_cost));
     }
-  });
-  for (std::uint32_t e = 0; e < edge_count_; ++e) {
-    if (!std::isfinite(cost[e])) continue;
-    const auto quadric_cost = static_cast<double>(cost[e]);
-    queue_.set(e, views_ == nullptr ? quadric_cost : ViewMetric::least_price(quadric_cost));
   }
 }
 
@@ -193,14 +197,24 @@ void Engine::price_by_views(std::span<const std::uint32_t> edges) {
   }
 }
 
-/// Room for the steps to the target, if there is one: most take two triangles.
+/// Room for the steps to the target, if there is one: most take two triangles, and one value of each channel.
 void Engine::reserve_record() {
   const std::uint64_t faces = mesh_.live_faces > target_ ? mesh_.live_faces - target_ : 0;
   CollapseRecord& record = outcome_.record;
   if (record.steps.empty()) record.triangles_before = mesh_.live_faces;
   if (target_ == 0) return;
+  const std::uint64_t steps = faces / 2 + faces / 32;
   record.removed_faces.reserve(record.removed_faces.size() + faces + 1);
-  record.steps.reserve(record.steps.size() + faces / 2 + faces / 32);
+  record.steps.reserve(record.steps.size() + steps);
+  std::uint64_t values = 0, floats = 0;
+  for (const Channel& channel : state_.channels) {
+    const std::uint64_t size = channel.layer_value.size();
+    values += size;
+    floats += size * static_cast<std::uint64_t>(channel.width);
+  }
+  record.joins.reserve(values);
+  record.writes.reserve(values);
+  record.floats.reserve(floats);
 }
 
 // --- The loop --------------------------------------------------------------------------------------
@@ -254,7 +268,7 @@ void Engine::take_batch() {
     if (due.item < edge_count_) cost_.fetch_values(due.item);
   }
   for (const Due& due : batch_) {
-    if (due.item < edge_count_) cost_.fetch_joined(due.item);
+    if (due.item < edge_count_) cost_.fetch_seams(due.item);
   }
 }
 
@@ -328,15 +342,26 @@ void Engine::fetch_surroundings() const {
     prefetch(&mesh_.faces[c / 3]);
     if (!state_.channels.empty()) prefetch(&state_.channels.front().corner_value[c]);
   });
-  // The vertices and values next to each corner: around a vertex that is all of them, once.
+  // The vertices, edges and values next to each corner: around a vertex that is all of them, once.
   for_corners([&](std::uint32_t c) {
-    prefetch(&mesh_.vertices[mesh_.view(c).next]);
+    const CornerView at_c = mesh_.view(c);
+    prefetch(&mesh_.vertices[at_c.next]);
+    prefetch(&mesh_.edges[at_c.to_next]);
     for (const Channel& channel : state_.channels) {
       if (!channel.is_uv()) continue;
       const std::uint32_t value = channel.corner_value[CollapseMesh::next(c)];
       if (value != kInvalid) prefetch(channel.value(value));
     }
   });
+  // What the triangles on the edges leave when they go.
+  for (const Due& due : batch_) {
+    if (due.item >= edge_count_ || !mesh_.edges[due.item].is_listed()) continue;
+    for (const std::uint32_t half_edge : mesh_.edges[due.item].half_edges) {
+      if (half_edge == kInvalid) continue;
+      prefetch(mesh_.ring(mesh_.vertex(CollapseMesh::previous(half_edge))).data());
+      prefetch(&state_.mesh_face[half_edge / 3]);
+    }
+  }
 }
 
 /// Collapses the edge if that is legal at about the cost that it was queued for; else puts it back.

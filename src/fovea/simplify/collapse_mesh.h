@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "fovea/base/math.h"
@@ -55,10 +54,8 @@ struct alignas(16) CollapseEdge {
   void remove(std::uint32_t half_edge) {
     if (!is_listed()) {
       --half_edges[0];
-    } else if (half_edges[1] == half_edge) {
-      half_edges[1] = kInvalid;
     } else {
-      half_edges[0] = std::exchange(half_edges[1], kInvalid);
+      half_edges = {half_edges[0] == half_edge ? half_edges[1] : half_edges[0], kInvalid};
     }
   }
 };
@@ -96,14 +93,15 @@ struct CollapseMesh {
   /// Builds rings and edges from `vertex` of all faces, which are distinct. O(#F).
   void link();
 
-  static std::uint32_t next(std::uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
-  static std::uint32_t previous(std::uint32_t c) { return c % 3 == 0 ? c + 2 : c - 1; }
+  // Calculated rather than chosen: compilers make branches of choices, and nothing foretells these.
+  static std::uint32_t next(std::uint32_t c) { return c + 1 - 3 * (c % 3 == 2); }
+  static std::uint32_t previous(std::uint32_t c) { return c - 1 + 3 * (c % 3 == 0); }
   std::uint32_t vertex(std::uint32_t c) const { return faces[c / 3].vertex[c % 3]; }
   std::uint32_t edge(std::uint32_t c) const { return faces[c / 3].edge[c % 3]; }
   std::uint32_t& edge(std::uint32_t c) { return faces[c / 3].edge[c % 3]; }
   CornerView view(std::uint32_t c) const {
     const CollapseFace& face = faces[c / 3];
-    const std::uint32_t k = c % 3, n = k == 2 ? 0 : k + 1, p = k == 0 ? 2 : k - 1;
+    const std::uint32_t k = c % 3, n = next(k), p = previous(k);
     return {face.vertex[n], face.vertex[p], face.edge[k], face.edge[p]};
   }
   Vec3d position(std::uint32_t v) const { return Vec3d(vertices[v].position); }

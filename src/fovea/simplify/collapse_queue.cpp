@@ -3,7 +3,16 @@
 #include <algorithm>
 #include <iterator>
 
+#include "fovea/base/prefetch.h"
+
 namespace fovea {
+
+namespace {
+
+/// So many entries before an entry comes up its item's bucket is fetched.
+constexpr std::uint32_t kLookAhead = 8;
+
+}  // namespace
 
 void CollapseQueue::set(std::uint32_t item, double cost) {
   const std::uint16_t bucket = bucket_of(cost);
@@ -22,7 +31,9 @@ std::uint32_t CollapseQueue::first() {
           static_cast<std::uint16_t>(64 * lowest_word_ + static_cast<std::size_t>(std::countr_zero(word)));
       Stack& stack = stacks_[bucket];
       while (stack.top != kInvalid) {
-        const std::uint32_t item = blocks_[stack.top].items[stack.count - 1];
+        const Block& block = blocks_[stack.top];
+        const std::uint32_t item = block.items[stack.count - 1];
+        prefetch(&bucket_[block.items[stack.count > kLookAhead ? stack.count - 1 - kLookAhead : 0]]);
         if (bucket_[item] == bucket) return item;
         pop(stack);
       }

@@ -16,7 +16,9 @@ namespace fovea {
 /// a change touches one place in memory. 2 bytes per item and 4 per entry.
 class CollapseQueue {
  public:
-  explicit CollapseQueue(std::size_t items) : bucket_(items, kNone), stacks_(kBuckets) {}
+  explicit CollapseQueue(std::size_t items) : bucket_(items, kNone), stacks_(kBuckets) {
+    blocks_.reserve(items / 16);  // not touched before it is needed
+  }
 
   bool contains(std::uint32_t item) const { return bucket_[item] != kNone; }
   /// Puts an item in, or moves it to its new cost.

@@ -32,6 +32,12 @@ constexpr double kSeamWeight = 0.3;
 /// Weight of a component that vanishes against a surface of its area that moves by its radius.
 constexpr double kVanishWeight = 1;
 
+/// What is found anew each time that it is needed, rather than kept: memory is scarcer than time.
+struct FaceShape {
+  Vec3d normal;  ///< Unit, or zero.
+  double area;
+};
+
 /// A face while its quadrics are added.
 struct FaceFrame {
   std::uint32_t face, mesh;
@@ -54,7 +60,6 @@ class Builder {
     make_connectivity();
     make_channels();
     make_locks();
-    measure_faces();
     for (Channel& channel : state_.channels) {
       find_single_values(channel);
       if (channel.kind == ChannelKind::fitted) scale_channel(channel);
@@ -77,7 +82,7 @@ class Builder {
                      const std::vector<std::uint32_t>& layer_indices);
   void make_columns();
   void make_locks();
-  void measure_faces();
+  FaceShape shape_of(std::size_t f) const;
   void find_single_values(Channel& channel) const;
   void scale_channel(Channel& channel) const;
   void add_face_quadrics();
@@ -106,8 +111,6 @@ class Builder {
   const Context& context_;
   CollapseState state_;
   std::vector<double> importance_weight_;  // [#V], empty if all are 1; 1 where locked
-  std::vector<Vec3d> normal_;              // [#F], unit
-  std::vector<double> area_;               // [#F]
 };
 
 void Builder::place_meshes(std::span<const double> scales, double diagonal) {
@@ -349,20 +352,12 @@ void Builder::make_locks() {
   }
 }
 
-void Builder::measure_faces() {
-  const std::size_t faces = state_.mesh.faces.size();
-  normal_.resize(faces);
-  area_.resize(faces);
-  parallel_for(context_, faces, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto& t = state_.mesh.faces[f].vertex;
-      const Vec3d p = state_.mesh.position(t[0]);
-      const Vec3d n = cross(state_.mesh.position(t[1]) - p, state_.mesh.position(t[2]) - p);
-      const double l = length(n);
-      area_[f] = 0.5 * l;
-      normal_[f] = l > 0 ? n / l : Vec3d{};
-    }
-  });
+FaceShape Builder::shape_of(std::size_t f) const {
+  const auto& t = state_.mesh.faces[f].vertex;
+  const Vec3d p = state_.mesh.position(t[0]);
+  const Vec3d n = cross(state_.mesh.position(t[1]) - p, state_.mesh.position(t[2]) - p);
+  const double l = length(n);
+  return {l > 0 ? n / l : Vec3d{}, 0.5 * l};
 }
 
 void Builder::find_single_values(Channel& channel) const {
@@ -395,7 +390,7 @@ void Builder::scale_channel(Channel& channel) const {
           const float* x = channel.value(channel.corner_value[3 * f + k]);
           return Vec2d{x[0], x[1]};
         };
-        area += area_[f];
+        area += shape_of(f).area;
         area_uv += 0.5 * std::abs(cross(uv(1) - uv(0), uv(2) - uv(0)));
       }
       length = area_uv > 0 ? kSlide * std::sqrt(area / area_uv) : 0;
@@ -441,13 +436,14 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
   CollapseMesh& mesh = state_.mesh;
   const auto& t = mesh.faces[f].vertex;
   const Vec3d p0 = mesh.position(t[0]);
+  const auto [normal, area] = shape_of(f);
   Quadric q;
-  q.weight = area_[f] / 3;
-  q.add_linear(normal_[f], -dot(normal_[f], p0), q.weight);
-  if (area_[f] > 1e-16) {
+  q.weight = area / 3;
+  q.add_linear(normal, -dot(normal, p0), q.weight);
+  if (area > 1e-16) {
     const FaceFrame frame{
         f, m, q.weight, p0,
-        TriangleGradient(mesh.position(t[1]) - p0, mesh.position(t[2]) - p0, normal_[f], 2 * area_[f])};
+        TriangleGradient(mesh.position(t[1]) - p0, mesh.position(t[2]) - p0, normal, 2 * area)};
     for (Channel& channel : state_.channels) {
       if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid) continue;
       switch (channel.fit_width) {
@@ -520,11 +516,10 @@ bool Builder::is_seam(std::uint32_t a, std::uint32_t b) const {
 /// Planes through boundary and seam edges, upright on their faces, hold the curves in place.
 void Builder::add_edge_quadrics() {
   const CollapseMesh& mesh = state_.mesh;
-  std::vector<std::uint32_t> first_corner(mesh.edges.size(), kInvalid);
   const auto hold = [&](std::uint32_t c, double weight) {
     const std::uint32_t v = mesh.vertex(c), w = mesh.vertex(CollapseMesh::next(c));
     const Vec3d edge = state_.mesh.position(w) - state_.mesh.position(v);
-    const Vec3d upright = normalized(cross(normal_[c / 3], edge));
+    const Vec3d upright = normalized(cross(shape_of(c / 3).normal, edge));
     const double d = -dot(upright, state_.mesh.position(v));
     const double share = 0.5 * weight * dot(edge, edge);
     for (const std::uint32_t end : {v, w}) {
@@ -533,15 +528,14 @@ void Builder::add_edge_quadrics() {
     }
   };
   for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {
-    const std::uint32_t e = mesh.edge(c);
-    if (mesh.edges[e].face_count() == 1) {
+    const CollapseEdge& edge = mesh.edges[mesh.edge(c)];
+    if (edge.face_count() == 1) {
       hold(c, kBoundaryWeight * options_.boundary_weight);
-    } else if (mesh.edges[e].face_count() == 2) {
-      if (first_corner[e] == kInvalid) {
-        first_corner[e] = c;
-      } else if (is_seam(first_corner[e], c)) {
-        hold(first_corner[e], kSeamWeight * options_.seam_weight);
-        hold(c, kSeamWeight * options_.seam_weight);
+    } else if (edge.face_count() == 2) {
+      const auto [first, second] = std::minmax(edge.half_edges[0], edge.half_edges[1]);
+      if (c == second && is_seam(first, second)) {
+        hold(first, kSeamWeight * options_.seam_weight);
+        hold(second, kSeamWeight * options_.seam_weight);
       }
     }
   }
@@ -556,9 +550,10 @@ void Builder::price_components() {
     double weight = 0;
     for (std::uint32_t k = state_.components.first[i]; k < state_.components.first[i + 1]; ++k) {
       const std::uint32_t f = state_.components.faces[k];
+      const double area = shape_of(f).area;
       for (const std::uint32_t v : state_.mesh.faces[f].vertex) {
         box.add(state_.mesh.position(v));
-        weight += area_[f] / 3 * weight_of(v);
+        weight += area / 3 * weight_of(v);
       }
     }
     const double radius = 0.5 * box.diagonal();

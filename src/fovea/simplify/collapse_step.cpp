@@ -19,7 +19,7 @@ std::uint32_t CollapseStepper::collapse(std::uint32_t e, Vec3d p, double error) 
   if (views_ != nullptr) views_->before_collapse(a, b, p);
   merge_.apply(a, b, m, record_);
   dropped_.clear();
-  drop_shared_faces(a, b);
+  for (const std::uint32_t f : legality_.shared_faces(a)) drop_face(f);
   merge_edges(a, b);
   drop_coincident_faces(b);
 
@@ -67,15 +67,6 @@ void CollapseStepper::drop_face(std::uint32_t f) {
   record_.removed_faces.push_back(state_.mesh_face[f]);
 }
 
-void CollapseStepper::drop_shared_faces(std::uint32_t a, std::uint32_t b) {
-  ring_.clear();
-  mesh_.for_ring(a, [&](std::uint32_t c) {
-    const CornerView at_c = mesh_.view(c);
-    if (at_c.next == b || at_c.previous == b) ring_.push_back(c / 3);
-  });
-  for (const std::uint32_t f : ring_) drop_face(f);
-}
-
 /// Gives a's triangles and edges to b; two edges to the same neighbour become one.
 void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
   // A neighbour of b is marked, with its edge to b.
@@ -91,14 +82,15 @@ void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
   });
   const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
     const std::uint32_t e = mesh_.edge(half_edge);
-    if (mesh_.vertices[w].mark != mark) {
-      note(w, e);
+    const std::uint32_t kept = mesh_.vertices[w].mark == mark ? mesh_.vertices[w].mark_count : e;
+    note(w, kept);
+    if (kept == e) {
       mesh_.edges[e].ends = {b, w};
-    } else if (const std::uint32_t kept = mesh_.vertices[w].mark_count; kept != e) {
-      mesh_.edge(half_edge) = kept;
-      mesh_.edges[kept].add(half_edge);
-      leave_edge(e, half_edge);
+      return;
     }
+    mesh_.edge(half_edge) = kept;
+    mesh_.edges[kept].add(half_edge);
+    leave_edge(e, half_edge);
   };
   mesh_.for_ring(a, [&](std::uint32_t c) {
     const CornerView at_c = mesh_.view(c);
@@ -142,9 +134,9 @@ void CollapseStepper::retire_values(std::uint32_t a, std::uint32_t b) {
     for (Channel& channel : state_.channels) {
       const std::uint32_t value = channel.corner_value[c];
       if (channel.kind != ChannelKind::fitted || value == kInvalid) continue;
-      if (std::any_of(ring.begin(), ring.end(),
-                      [&](std::uint32_t d) { return channel.corner_value[d] == value; }))
-        continue;
+      bool is_used = false;
+      for (const std::uint32_t d : ring) is_used |= channel.corner_value[d] == value;
+      if (is_used) continue;
       mesh_.quadrics[v] += cost_.separate(channel, v, value);
       std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0f);
       retired = true;

@@ -42,7 +42,6 @@ class CollapseStepper {
 
  private:
   void merge_edges(std::uint32_t a, std::uint32_t b);
-  void drop_shared_faces(std::uint32_t a, std::uint32_t b);
   void drop_coincident_faces(std::uint32_t b);
   void leave_edge(std::uint32_t e, std::uint32_t half_edge);
   void drop_face(std::uint32_t f);

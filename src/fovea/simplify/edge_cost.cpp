@@ -68,43 +68,76 @@ EdgeCost::EdgeCost(const CollapseState& state, Placement placement)
       return channel.kind == ChannelKind::fitted && channel.single[v] == Channel::kMany;
     });
   }
-  separate_.reserve(count);
+  seam_.reserve(count * state.channels.size());
   for (std::uint32_t v = 0; v < slot_.size(); ++v) refresh(v);
 }
 
 void EdgeCost::refresh(std::uint32_t v) {
-  Quadric sum;
-  bool many = false;
-  for (const Channel& channel : state_.channels) {
+  forget(v);
+  for (std::size_t i = 0; i < state_.channels.size(); ++i) {
+    const Channel& channel = state_.channels[i];
     if (channel.kind != ChannelKind::fitted || channel.single[v] != Channel::kMany) continue;
-    many = true;
-    values_.clear();
-    for (const std::uint32_t c : mesh_.ring(v)) {
-      if (channel.corner_value[c] != kInvalid) values_.push_back(channel.corner_value[c]);
-    }
-    std::sort(values_.begin(), values_.end());
-    values_.erase(std::unique(values_.begin(), values_.end()), values_.end());
-    for (const std::uint32_t value : values_)
-      settle_alone(sum, channel, channel.fit_width, value, state_.slot_of_vertex(v));
+    if (slot_[v] == kInvalid) take_slot(v);
+    seam_values(v, i) = look_at_values(channel, v);
   }
-  if (!many) {
-    forget(v);
-    return;
-  }
-  if (slot_[v] == kInvalid) {
-    if (free_slots_.empty()) {
-      free_slots_.push_back(static_cast<std::uint32_t>(separate_.size()));
-      separate_.emplace_back();
-    }
-    slot_[v] = free_slots_.back();
-    free_slots_.pop_back();
-  }
-  separate_[slot_[v]] = sum;
 }
 
 void EdgeCost::forget(std::uint32_t v) {
-  if (slot_[v] != kInvalid) free_slots_.push_back(slot_[v]);
+  if (slot_[v] == kInvalid) return;
+  for (std::size_t i = 0; i < state_.channels.size(); ++i) {
+    SeamValues& values = seam_values(v, i);
+    if (!values.is_listed()) free_sums_.push_back(values.value[0]);
+    values.count = 0;
+  }
+  free_slots_.push_back(slot_[v]);
   slot_[v] = kInvalid;
+}
+
+void EdgeCost::take_slot(std::uint32_t v) {
+  if (free_slots_.empty()) {
+    free_slots_.push_back(static_cast<std::uint32_t>(seam_.size() / state_.channels.size()));
+    seam_.resize(seam_.size() + state_.channels.size());
+  }
+  slot_[v] = free_slots_.back();
+  free_slots_.pop_back();
+}
+
+/// The different values at v, which are several, or their sum.
+EdgeCost::SeamValues EdgeCost::look_at_values(const Channel& channel, std::uint32_t v) {
+  SeamValues found;
+  for (const std::uint32_t c : mesh_.ring(v)) {
+    const std::uint32_t value = channel.corner_value[c];
+    const auto list = found.list();
+    if (value == kInvalid || std::find(list.begin(), list.end(), value) != list.end()) continue;
+    if (found.count == SeamValues::kMost) {
+      found.value[0] = sum_values(channel, v);
+      found.count = SeamValues::kMost + 1;
+      break;
+    }
+    found.value[found.count++] = value;
+  }
+  return found;
+}
+
+/// Index of a new sum of what all values at v make up for by themselves.
+std::uint32_t EdgeCost::sum_values(const Channel& channel, std::uint32_t v) {
+  values_.clear();
+  for (const std::uint32_t c : mesh_.ring(v)) {
+    if (channel.corner_value[c] != kInvalid) values_.push_back(channel.corner_value[c]);
+  }
+  std::sort(values_.begin(), values_.end());
+  values_.erase(std::unique(values_.begin(), values_.end()), values_.end());
+  Quadric sum;
+  for (const std::uint32_t value : values_)
+    settle_alone(sum, channel, channel.fit_width, value, state_.slot_of_vertex(v));
+  if (free_sums_.empty()) {
+    free_sums_.push_back(static_cast<std::uint32_t>(sums_.size()));
+    sums_.emplace_back();
+  }
+  const std::uint32_t index = free_sums_.back();
+  free_sums_.pop_back();
+  sums_[index] = sum;
+  return index;
 }
 
 Quadric EdgeCost::separate(const Channel& channel, std::uint32_t v, std::uint32_t value) const {
@@ -113,13 +146,39 @@ Quadric EdgeCost::separate(const Channel& channel, std::uint32_t v, std::uint32_
   return q;
 }
 
-/// For a channel with several values at an end: those that join on the edge are settled together instead
-/// of by themselves.
+/// Adds what those values at v make up for by themselves that no triangle on the edge uses.
 template <int Width>
-void EdgeCost::settle_joined(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+void EdgeCost::settle_rest(Quadric& q, std::size_t channel_index, std::uint32_t v, const JoinedValues& joined,
+                           bool is_b) const {
+  const Channel& channel = state_.channels[channel_index];
+  const auto alone = [&](std::uint32_t value, double times = 1) {
+    settle_alone(q, channel, Width > 0 ? Width : channel.fit_width, value, state_.slot_of_vertex(v), times);
+  };
+  const std::uint32_t single = channel.single[v];
+  if (single != Channel::kMany) {
+    if (single != kInvalid && joined.count_at(is_b) == 0) alone(single);
+    return;
+  }
+  const SeamValues& values = seam_values(v, channel_index);
+  if (values.is_listed()) {
+    if (joined.count_at(is_b) == values.count) return;
+    for (const std::uint32_t value : values.list()) {
+      if (!joined.contains(value)) alone(value);
+    }
+    return;
+  }
+  q += sums_[values.value[0]];
+  for (std::uint32_t k = 0; k < joined.size(); ++k) {
+    if (joined[k].at_b == is_b) alone(joined[k].value, -1);
+  }
+}
+
+/// For a channel with several values at an end: those that join on the edge are settled together.
+template <int Width>
+void EdgeCost::settle_joined(Quadric& q, std::size_t channel_index, std::uint32_t a, std::uint32_t b,
                              const EdgeCorners& corners) const {
+  const Channel& channel = state_.channels[channel_index];
   const int width = Width > 0 ? Width : channel.fit_width;
-  const std::uint32_t mesh = state_.slot_of_vertex(a);
   const bool many_a = channel.single[a] == Channel::kMany, many_b = channel.single[b] == Channel::kMany;
   const JoinedValues joined(channel, corners);
   for (std::uint32_t root = 0; root < joined.size(); ++root) {
@@ -131,32 +190,29 @@ void EdgeCost::settle_joined(Quadric& q, const Channel& channel, std::uint32_t a
       if (member.root != root) continue;
       sum.add(channel.value_quadric(member.value));
       ends.add(member.value, member.at_b);
-      if (member.at_b ? many_b : many_a) settle_alone(q, channel, width, member.value, mesh, -1);
     }
     const std::uint32_t held = channel.is_uv() ? ends.held_value(many_a, many_b) : kInvalid;
     if (held == kInvalid) {
       reduce(q, sum.get(), width);
     } else {
-      hold_at(q, channel, sum.get(), held, mesh);
+      hold_at(q, channel, sum.get(), held, state_.slot_of_vertex(a));
     }
   }
-  // An end's only value that no triangle on the edge uses.
-  for (const std::uint32_t v : {a, b}) {
-    const std::uint32_t single = channel.single[v];
-    if (single < Channel::kMany && !joined.contains(single)) settle_alone(q, channel, width, single, mesh);
-  }
+  settle_rest<Width>(q, channel_index, a, joined, false);
+  settle_rest<Width>(q, channel_index, b, joined, true);
 }
 
-/// Adds what the values of one channel make up for, beyond those in `separate_`.
+/// Adds what the values of one channel make up for.
 template <int Width>
-void EdgeCost::settle(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+void EdgeCost::settle(Quadric& q, std::size_t channel_index, std::uint32_t a, std::uint32_t b,
                       const EdgeCorners& corners) const {
-  const int width = Width > 0 ? Width : channel.fit_width;
+  const Channel& channel = state_.channels[channel_index];
   const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
   if (single_a == Channel::kMany || single_b == Channel::kMany) {
-    settle_joined<Width>(q, channel, a, b, corners);
+    settle_joined<Width>(q, channel_index, a, b, corners);
     return;
   }
+  const int width = Width > 0 ? Width : channel.fit_width;
   AttributeSum<Width> sum(width);
   for (const std::uint32_t single : {single_a, single_b}) {
     if (single != kInvalid) sum.add(channel.value_quadric(single));
@@ -168,19 +224,15 @@ Quadric EdgeCost::quadric(std::uint32_t e) const {
   const auto [a, b] = mesh_.edges[e].ends;
   Quadric q = mesh_.quadrics[a] + mesh_.quadrics[b];
   EdgeCorners corners;
-  const std::uint32_t slot_a = slot_[a], slot_b = slot_[b];
-  if (slot_a != kInvalid || slot_b != kInvalid) {
-    corners = mesh_.edge_corners(e, a);
-    if (slot_a != kInvalid) q += separate_[slot_a];
-    if (slot_b != kInvalid) q += separate_[slot_b];
-  }
-  for (const Channel& channel : state_.channels) {
+  if (has_many(a) || has_many(b)) corners = mesh_.edge_corners(e, a);
+  for (std::size_t i = 0; i < state_.channels.size(); ++i) {
+    const Channel& channel = state_.channels[i];
     if (channel.kind != ChannelKind::fitted) continue;
     switch (channel.fit_width) {
-      case 2: settle<2>(q, channel, a, b, corners); break;
-      case 3: settle<3>(q, channel, a, b, corners); break;
-      case 4: settle<4>(q, channel, a, b, corners); break;
-      default: settle<0>(q, channel, a, b, corners);
+      case 2: settle<2>(q, i, a, b, corners); break;
+      case 3: settle<3>(q, i, a, b, corners); break;
+      case 4: settle<4>(q, i, a, b, corners); break;
+      default: settle<0>(q, i, a, b, corners);
     }
   }
   return q;
@@ -207,12 +259,14 @@ void EdgeCost::fetch_ends(std::uint32_t e) const {
     prefetch(&mesh_.vertices[v]);
     prefetch(&mesh_.quadrics[v]);
     prefetch(&mesh_.quadrics[v].weight);
+    if (state_.channels.empty()) continue;
     prefetch(&slot_[v]);
-    if (!state_.channels.empty()) prefetch(&state_.channels.front().single[v]);
+    prefetch(&state_.channels.front().single[v]);
   }
 }
 
 void EdgeCost::fetch_values(std::uint32_t e) const {
+  if (state_.channels.empty()) return;
   const CollapseEdge& edge = mesh_.edges[e];
   bool at_seam = false;
   for (const std::uint32_t v : edge.ends) {
@@ -220,10 +274,9 @@ void EdgeCost::fetch_values(std::uint32_t e) const {
       if (channel.kind == ChannelKind::fitted && channel.single[v] < Channel::kMany)
         fetch_value(channel, channel.single[v]);
     }
-    if (slot_[v] == kInvalid) continue;
+    if (!has_many(v)) continue;
     at_seam = true;
-    prefetch(&separate_[slot_[v]]);
-    prefetch(&separate_[slot_[v]].weight);
+    prefetch(&seam_values(v, 0));
   }
   if (!at_seam || !edge.is_listed()) return;
   for (const std::uint32_t half_edge : edge.half_edges) {
@@ -233,16 +286,16 @@ void EdgeCost::fetch_values(std::uint32_t e) const {
   }
 }
 
-void EdgeCost::fetch_joined(std::uint32_t e) const {
-  const CollapseEdge& edge = mesh_.edges[e];
-  const auto [a, b] = edge.ends;
-  if ((slot_[a] == kInvalid && slot_[b] == kInvalid) || !edge.is_listed()) return;
-  for (const std::uint32_t half_edge : edge.half_edges) {
-    if (half_edge == kInvalid) continue;
-    for (const Channel& channel : state_.channels) {
-      if (channel.kind != ChannelKind::fitted) continue;
-      for (const std::uint32_t c : {half_edge, CollapseMesh::next(half_edge)}) {
-        if (channel.corner_value[c] != kInvalid) fetch_value(channel, channel.corner_value[c]);
+void EdgeCost::fetch_seams(std::uint32_t e) const {
+  if (state_.channels.empty()) return;
+  for (const std::uint32_t v : mesh_.edges[e].ends) {
+    if (!has_many(v)) continue;
+    for (std::size_t i = 0; i < state_.channels.size(); ++i) {
+      const SeamValues& values = seam_values(v, i);
+      if (!values.is_listed()) continue;
+      for (const std::uint32_t value : values.list()) {
+        fetch_value(state_.channels[i], value);
+        if (state_.channels[i].is_uv()) prefetch(state_.channels[i].value(value));  // it may be held
       }
     }
   }

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "fovea/simplify/collapse_state.h"
 
 namespace fovea {
+
+class JoinedValues;
 
 /// A place for the merged vertex of an edge, and what it costs.
 struct Candidate {
@@ -18,8 +22,8 @@ struct Candidate {
 ///
 /// The error of the merged vertex as a function of its position is the sum of the quadrics of both
 /// ends, less what the values of attributes can make up for (quadric.h): values that join are fitted
-/// together, the others by themselves. At seams most values do not join, so the sum over all values of
-/// a vertex by themselves is kept per vertex, and an edge corrects it for those that join.
+/// together, the others by themselves. So the values of a vertex on a seam are listed. Where they are many,
+/// what they make up for by themselves is summed once, and an edge corrects that for those that join.
 class EdgeCost {
  public:
   /// Looks at all vertices of `state`, which must outlive this. O(#V + #F).
@@ -44,28 +48,52 @@ class EdgeCost {
   std::size_t fallbacks(std::uint32_t e, const Quadric& q, Candidate* out) const;
 
   /// Starts to load what `quadric(e)` will read, in steps that each need what the one before fetched: the
-  /// ends, their values and what lies at a seam, the values that join there.
+  /// ends, their values and what lies at a seam, the values that are listed there.
   void fetch_ends(std::uint32_t e) const;
   void fetch_values(std::uint32_t e) const;
-  void fetch_joined(std::uint32_t e) const;
+  void fetch_seams(std::uint32_t e) const;
 
  private:
+  /// The values of one channel at a vertex that has several.
+  struct alignas(16) SeamValues {
+    static constexpr std::uint32_t kMost = 3;
+    std::uint32_t count = 0;  ///< kMost + 1 if they are too many to be listed; 0 if not several.
+    std::array<std::uint32_t, kMost> value;  ///< Or, first, the index of their sum.
+
+    bool is_listed() const { return count <= kMost; }
+    std::span<const std::uint32_t> list() const { return {value.data(), count}; }
+  };
+
   template <int Width>
-  void settle(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+  void settle(Quadric& q, std::size_t channel, std::uint32_t a, std::uint32_t b,
               const EdgeCorners& corners) const;
   template <int Width>
-  void settle_joined(Quadric& q, const Channel& channel, std::uint32_t a, std::uint32_t b,
+  void settle_joined(Quadric& q, std::size_t channel, std::uint32_t a, std::uint32_t b,
                      const EdgeCorners& corners) const;
+  template <int Width>
+  void settle_rest(Quadric& q, std::size_t channel, std::uint32_t v, const JoinedValues& joined,
+                   bool is_b) const;
+  SeamValues& seam_values(std::uint32_t v, std::size_t channel) {
+    return seam_[slot_[v] * state_.channels.size() + channel];
+  }
+  const SeamValues& seam_values(std::uint32_t v, std::size_t channel) const {
+    return seam_[slot_[v] * state_.channels.size() + channel];
+  }
+  void take_slot(std::uint32_t v);
+  SeamValues look_at_values(const Channel& channel, std::uint32_t v);
+  std::uint32_t sum_values(const Channel& channel, std::uint32_t v);
 
   void fetch_value(const Channel& channel, std::uint32_t value) const;
 
   const CollapseState& state_;
   const CollapseMesh& mesh_;
   const Placement placement_;
-  std::vector<std::uint32_t> slot_;  // [#V] into `separate_`, kInvalid without a channel of many values
-  std::vector<Quadric> separate_;    // what such a vertex's values make up for by themselves
+  std::vector<std::uint32_t> slot_;  // [#V] in `seam_`, kInvalid without a channel of several values
   std::vector<std::uint32_t> free_slots_;
-  std::vector<std::uint32_t> values_;  // scratch of refresh()
+  std::vector<SeamValues> seam_;  // [#slots × #channels]
+  std::vector<Quadric> sums_;     // what values that are not listed make up for by themselves
+  std::vector<std::uint32_t> free_sums_;
+  std::vector<std::uint32_t> values_;  // scratch of sum_values()
 };
 
 }  // namespace fovea

@@ -23,68 +23,78 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   b_ = b;
   // A neighbour of a is marked `at_a`; one of b `at_b`; one of both, `at_both`; `counted` once it has
   // been seen across the edge. `mark_count` counts the triangles on its edge to a, then to b. Those of one
-  // triangle are open: there is a boundary.
+  // triangle are open: there is a boundary. No branches here: nothing foretells them.
   const std::uint32_t at_a = mesh.new_mark(), at_b = at_a + 1, at_both = at_a + 2, counted = at_a + 3;
   std::size_t open_a = 0, open_b = 0, common = 0;
-  far_.clear();
-  across_.clear();
-  for (const std::uint32_t c : mesh.ring(a)) {
+  const auto ring_a = mesh.ring(a), ring_b = mesh.ring(b);
+  make_room(ring_a.size() + ring_b.size());
+  std::size_t far = 0, shared_at_a = 0, shared_at_b = 0;
+  for (const std::uint32_t c : ring_a) {
     const CornerView at_c = mesh.view(c);
     for (const std::uint32_t w : {at_c.next, at_c.previous}) {
       CollapseVertex& vertex = mesh.vertices[w];
-      if (vertex.mark != at_a) {
-        vertex.mark = at_a;
-        vertex.mark_count = 1;
-        ++open_a;
-      } else if (vertex.mark_count++ == 1) {
-        --open_a;
-      }
+      vertex.mark_count = vertex.mark_count * (vertex.mark == at_a) + 1;
+      vertex.mark = at_a;
+      open_a += std::size_t{vertex.mark_count == 1} - std::size_t{vertex.mark_count == 2};
     }
-    if (at_c.next != b && at_c.previous != b) far_.push_back({c, at_c.next, at_c.previous});
+    const bool is_shared = (at_c.next == b) | (at_c.previous == b);
+    far_[far] = {c, at_c.next, at_c.previous};
+    far += !is_shared;
+    shared_at_a_[shared_at_a] = c / 3;
+    shared_at_a += is_shared;
   }
-  far_at_a_ = far_.size();
-  for (const std::uint32_t c : mesh.ring(b)) {
+  far_at_a_ = far;
+  for (const std::uint32_t c : ring_b) {
     const CornerView at_c = mesh.view(c);
     for (const std::uint32_t w : {at_c.next, at_c.previous}) {
       CollapseVertex& vertex = mesh.vertices[w];
-      if (vertex.mark != at_b && vertex.mark != at_both) {
-        const bool shared = vertex.mark == at_a;
-        common += shared;
-        vertex.mark = shared ? at_both : at_b;
-        vertex.mark_count = 1;
-        ++open_b;
-      } else if (vertex.mark_count++ == 1) {
-        --open_b;
-      }
+      const bool is_common = vertex.mark == at_a, is_known = vertex.mark - at_b <= at_both - at_b;
+      vertex.mark_count = vertex.mark_count * is_known + 1;
+      vertex.mark = is_known ? vertex.mark : at_b + is_common;
+      common += is_common;
+      open_b += std::size_t{vertex.mark_count == 1} - std::size_t{vertex.mark_count == 2};
     }
-    if (at_c.next == a || at_c.previous == a) {
-      across_.push_back(at_c.next == a ? at_c.previous : at_c.next);
-    } else {
-      far_.push_back({c, at_c.next, at_c.previous});
-    }
+    const bool is_shared = (at_c.next == a) | (at_c.previous == a);
+    far_[far] = {c, at_c.next, at_c.previous};
+    far += !is_shared;
+    across_[shared_at_b] = at_c.next == a ? at_c.previous : at_c.next;
+    shared_at_b_[shared_at_b] = c / 3;
+    shared_at_b += is_shared;
   }
+  far_count_ = far;
+  shared_count_ = shared_at_b;
   std::size_t common_across = 0;
-  for (const std::uint32_t w : across_) {
-    common_across += mesh.vertices[w].mark == at_both;
-    mesh.vertices[w].mark = counted;
+  for (std::size_t i = 0; i < shared_at_b; ++i) {
+    std::uint32_t& mark = mesh.vertices[across_[i]].mark;
+    common_across += mark == at_both;
+    mark = counted;
   }
   std::size_t coincident = 0;
-  for (std::size_t i = far_at_a_; i < far_.size() && common >= 2; ++i) {
+  for (std::size_t i = far_at_a_; i < far && common >= 2; ++i) {
     const auto [c, n, p] = far_[i];
-    if (mesh.vertices[n].mark < at_both || mesh.vertices[p].mark < at_both) continue;
+    if ((mesh.vertices[n].mark < at_both) | (mesh.vertices[p].mark < at_both)) continue;
     for (std::size_t j = 0; j < far_at_a_; ++j) {
       const auto [d, x, y] = far_[j];
       coincident += (x == n && y == p) || (x == p && y == n);
     }
   }
-  if (far_.size() <= 2 * coincident) {
+  if (far <= 2 * coincident) {
     topology_ = Block::last;
-  } else if (common != common_across || coincident > 0 || (across_.size() >= 2 && open_a > 0 && open_b > 0)) {
+  } else if (common != common_across || coincident > 0 || (shared_at_b >= 2 && open_a > 0 && open_b > 0)) {
     topology_ = Block::topology;
   } else {
     topology_ = Block::none;
   }
   return topology_ == Block::none;
+}
+
+/// Room for `corners` corners at both ends. What is there stays: it will be written over.
+void Legality::make_room(std::size_t corners) {
+  if (far_.size() >= corners) return;
+  far_.resize(corners);
+  across_.resize(corners);
+  shared_at_a_.resize(corners);
+  shared_at_b_.resize(corners);
 }
 
 bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
@@ -103,7 +113,7 @@ bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
 
 bool Legality::shape(Vec3d p) const {
   const Vec3d a = state_.mesh.position(a_), b = state_.mesh.position(b_);
-  for (std::size_t i = 0; i < far_.size(); ++i) {
+  for (std::size_t i = 0; i < far_count_; ++i) {
     if (!keeps_shape(far_[i], i < far_at_a_ ? a : b, p)) return false;
   }
   return true;
@@ -124,8 +134,8 @@ bool Legality::keeps_texture(const Far& face, std::size_t channel_index, const V
 bool Legality::texture(const ValueMerge& merge) const {
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
     if (!state_.channels[i].is_uv()) continue;
-    for (const Far& face : far_) {
-      if (!keeps_texture(face, i, merge)) return false;
+    for (std::size_t k = 0; k < far_count_; ++k) {
+      if (!keeps_texture(far_[k], i, merge)) return false;
     }
   }
   return true;

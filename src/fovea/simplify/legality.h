@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fovea/simplify/collapse_state.h"
@@ -25,7 +26,11 @@ class Legality {
   bool look_at(std::uint32_t a, std::uint32_t b);
   Block topology() const { return topology_; }
   /// Whether so few triangles are left around the edge that next to nothing is seen of a thin part.
-  bool leaves_scrap() const { return far_.size() <= 2; }
+  bool leaves_scrap() const { return far_count_ <= 2; }
+  /// The triangles on the edge, in the order of the ring of v, one of its ends.
+  std::span<const std::uint32_t> shared_faces(std::uint32_t v) const {
+    return {(v == a_ ? shared_at_a_ : shared_at_b_).data(), shared_count_};
+  }
   /// Whether the edge leaves triangles on each other.
   bool may_coincide() const { return topology_ == Block::topology; }
 
@@ -41,15 +46,19 @@ class Legality {
     std::uint32_t corner;          // at the end
     std::uint32_t next, previous;  // vertices
   };
+  void make_room(std::size_t corners);
   bool keeps_shape(const Far& face, Vec3d from, Vec3d to) const;
   bool keeps_texture(const Far& face, std::size_t channel, const ValueMerge& merge) const;
 
   CollapseState& state_;  // for the vertices' marks; nothing else changes
   Block topology_ = Block::none;
   std::uint32_t a_ = kInvalid, b_ = kInvalid;
+  // With room for more than there is now:
   std::vector<Far> far_;  // those at a, then those at b
-  std::size_t far_at_a_ = 0;
-  std::vector<std::uint32_t> across_;  // vertices opposite to the edge
+  std::size_t far_count_ = 0, far_at_a_ = 0;
+  std::vector<std::uint32_t> across_;                     // vertices opposite to the edge
+  std::vector<std::uint32_t> shared_at_a_, shared_at_b_;  // triangles on the edge, as the rings have them
+  std::size_t shared_count_ = 0;
 };
 
 }  // namespace fovea

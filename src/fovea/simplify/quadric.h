@@ -90,11 +90,18 @@ template <class T>
 inline void reduce(Quadric& q, const T* attribute, int width, double times = 1) {
   const double weight = static_cast<double>(attribute[4 * width]);
   if (!(weight > 0)) return;
-  const double factor = -times / weight;
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, xd = 0, yd = 0, zd = 0, dd = 0;
   for (int k = 0; k < width; ++k) {
     const T* g = attribute + 4 * k;
-    q.add_linear({g[0], g[1], g[2]}, g[3], factor);
+    const double x = g[0], y = g[1], z = g[2], d = g[3];
+    xx += x * x, xy += x * y, xz += x * z, yy += y * y, yz += y * z, zz += z * z;
+    xd += x * d, yd += y * d, zd += z * d;
+    dd += d * d;
   }
+  const double f = -times / weight;
+  q.xx += f * xx, q.xy += f * xy, q.xz += f * xz, q.yy += f * yy, q.yz += f * yz, q.zz += f * zz;
+  q.bx += f * xd, q.by += f * yd, q.bz += f * zd;
+  q.c += f * dd;
 }
 
 /// Adds Σ_k −2 s_k (G_k·p + D_k) + W s_k²: the value of each component stays s_k wherever p is. With

@@ -7,16 +7,12 @@ namespace fovea {
 
 // --- Values that join -------------------------------------------------------------------------------
 
-JoinedValues::JoinedValues(const Channel& channel, const EdgeCorners& corners) {
-  for (std::size_t i = 0; i < corners.count; ++i) {
-    const std::uint32_t at_a = channel.corner_value[corners.pairs[i][0]],
-                        at_b = channel.corner_value[corners.pairs[i][1]];
-    if (at_a == kInvalid || at_b == kInvalid) continue;
-    const std::uint32_t x = members_[add(at_a, false)].root, y = members_[add(at_b, true)].root;
-    if (x == y) continue;
-    for (std::uint32_t k = 0; k < count_; ++k) {
-      if (members_[k].root == std::max(x, y)) members_[k].root = std::min(x, y);
-    }
+/// The values of another triangle on the edge join.
+void JoinedValues::join(std::uint32_t at_a, std::uint32_t at_b) {
+  const std::uint32_t x = members_[add(at_a, false)].root, y = members_[add(at_b, true)].root;
+  if (x == y) return;
+  for (std::uint32_t k = 0; k < count_; ++k) {
+    if (members_[k].root == std::max(x, y)) members_[k].root = std::min(x, y);
   }
 }
 
@@ -26,11 +22,6 @@ std::uint32_t JoinedValues::add(std::uint32_t value, bool at_b) {
   }
   members_[count_] = {value, count_, at_b};
   return count_++;
-}
-
-bool JoinedValues::contains(std::uint32_t value) const {
-  return std::any_of(members_.begin(), members_.begin() + count_,
-                     [&](const Member& member) { return member.value == value; });
 }
 
 // --- All values -------------------------------------------------------------------------------------

@@ -43,12 +43,36 @@ class JoinedValues {
     bool at_b;
   };
 
-  JoinedValues(const Channel& channel, const EdgeCorners& corners);
+  JoinedValues(const Channel& channel, const EdgeCorners& corners) {
+    for (std::size_t i = 0; i < corners.count; ++i) {
+      const std::uint32_t at_a = channel.corner_value[corners.pairs[i][0]],
+                          at_b = channel.corner_value[corners.pairs[i][1]];
+      if (at_a == kInvalid || at_b == kInvalid) continue;
+      if (count_ == 0) {
+        members_[0] = {at_a, 0, false};
+        members_[1] = {at_b, 0, true};
+        count_ = 2;
+      } else if (at_a != members_[0].value || at_b != members_[1].value) {
+        join(at_a, at_b);
+      }
+    }
+  }
   std::uint32_t size() const { return count_; }
   const Member& operator[](std::size_t i) const { return members_[i]; }
-  bool contains(std::uint32_t value) const;
+  /// How many of the values are at a, or at b.
+  std::uint32_t count_at(bool b) const {
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < count_; ++i) count += members_[i].at_b == b;
+    return count;
+  }
+  bool contains(std::uint32_t value) const {
+    bool found = false;
+    for (std::uint32_t i = 0; i < count_; ++i) found |= members_[i].value == value;
+    return found;
+  }
 
  private:
+  void join(std::uint32_t at_a, std::uint32_t at_b);
   std::uint32_t add(std::uint32_t value, bool at_b);
 
   std::array<Member, 2 * EdgeCorners::kMost> members_;

@@ -7,6 +7,7 @@
 namespace fovea {
 
 void ValueMerge::plan(std::uint32_t e, std::uint32_t a, std::uint32_t b, Vec3d p) {
+  if (plans_.empty()) return;
   const Vec3d pa = state_.mesh.position(a), edge = state_.mesh.position(b) - pa;
   const double l2 = length_squared(edge);
   along_ = l2 > 0 ? static_cast<float>(std::clamp(dot(p - pa, edge) / l2, 0.0, 1.0)) : 0.5f;
@@ -178,6 +179,7 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
     state_.mesh.for_ring(b, relabel);
     const bool many = channel.single[a] == Channel::kMany || channel.single[b] == Channel::kMany;
     channel.single[b] = many ? Channel::kMany : plan.classes[0].kept;
+    channel.single[a] = kInvalid;
   }
 }
 
