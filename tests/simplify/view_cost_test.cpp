@@ -39,9 +39,10 @@ struct Trial {
     }
     const std::vector<double> scales(meshes.size(), 1.0);
     state = make_collapse_state(meshes, scales, pointers, {}, bounds(model).diagonal(), options, context);
-    views = std::make_unique<ViewMetric>(state, model, mesh_index, options.metric, options, context);
+    views = std::make_unique<ViewMetric>(state, model, mesh_index, stage(), options, context);
     views->look(pointers);
   }
+  MetricStage stage() const { return metric_stage(options, 0, 0); }
   CollapseOutcome to(std::uint64_t triangles) {
     CollapseOutcome outcome;
     collapse(state, triangles, std::numeric_limits<double>::infinity(), options, views.get(), context,
@@ -50,7 +51,7 @@ struct Trial {
   }
   /// Views of the state as it is now, drawn anew.
   std::unique_ptr<ViewMetric> fresh() {
-    auto drawn = std::make_unique<ViewMetric>(state, model, mesh_index, options.metric, options, context);
+    auto drawn = std::make_unique<ViewMetric>(state, model, mesh_index, stage(), options, context);
     drawn->look({});
     return drawn;
   }

@@ -17,7 +17,12 @@ namespace {
 /// Numbers the images that materials ask for, and decodes them.
 class SceneImages {
  public:
-  explicit SceneImages(const Model& model) : model_(model) {}
+  SceneImages(const Model& model, SceneTextures textures) : model_(model), textures_(textures) {}
+
+  /// Of a detail of the surface, which not everybody wants.
+  std::optional<SceneTexture> use_detail(const std::optional<TextureRef>& ref, ColorEncoding encoding) {
+    return textures_ == SceneTextures::all ? use(ref, encoding) : std::nullopt;
+  }
 
   std::optional<SceneTexture> use(const std::optional<TextureRef>& ref, ColorEncoding encoding) {
     if (!ref || ref->texture < 0) return std::nullopt;
@@ -75,6 +80,7 @@ class SceneImages {
   }
 
   const Model& model_;
+  const SceneTextures textures_;
   std::map<std::pair<int, ColorEncoding>, int> number_;
   std::vector<std::pair<int, ColorEncoding>> wanted_;  // image and encoding of each
 };
@@ -88,12 +94,12 @@ SceneMaterial scene_material(const Material& m, SceneImages& images) {
   s.metallic = f(m.metallic_factor);
   s.roughness = f(m.roughness_factor);
   s.metallic_roughness_texture = images.use(m.metallic_roughness, ColorEncoding::linear);
-  s.normal_texture = images.use(m.normal, ColorEncoding::linear);
+  s.normal_texture = images.use_detail(m.normal, ColorEncoding::linear);
   s.normal_scale = f(m.normal_scale);
-  s.occlusion_texture = images.use(m.occlusion, ColorEncoding::linear);
+  s.occlusion_texture = images.use_detail(m.occlusion, ColorEncoding::linear);
   s.occlusion_strength = f(m.occlusion_strength);
   s.emission = {f(m.emissive_factor[0]), f(m.emissive_factor[1]), f(m.emissive_factor[2]), 1};
-  s.emissive_texture = images.use(m.emissive, ColorEncoding::srgb);
+  s.emissive_texture = images.use_detail(m.emissive, ColorEncoding::srgb);
   s.alpha_mode = m.alpha_mode;
   s.alpha_cutoff = f(m.alpha_cutoff);
   s.double_sided = m.double_sided;
@@ -158,9 +164,9 @@ Sphere sphere_around(const std::vector<SceneMesh>& meshes) {
 }  // namespace
 
 RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context,
-                              const RenderScene* other) {
+                              const RenderScene* other, SceneTextures textures) {
   RenderScene scene;
-  SceneImages images(model);
+  SceneImages images(model, textures);
   for (const Material& material : model.materials)
     scene.materials.push_back(scene_material(material, images));
   scene.materials.push_back(scene_material(Material{}, images));

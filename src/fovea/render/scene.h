@@ -71,11 +71,18 @@ struct RenderScene {
   Sphere sphere;  ///< Around the centre of the box of all positions.
 };
 
+/// Which textures of materials are decoded; the others count as absent.
+enum class SceneTextures {
+  all,
+  base_and_finish,  ///< Base colour, metalness and roughness.
+};
+
 /// Poses all instances and decodes the images in parallel. Images that cannot be decoded (KTX2, damaged)
 /// count as absent and are reported ("image-not-shown"). Images that `other` has decoded already are shared
 /// with it. Throws Error(limit) beyond 2³² − 1 triangles.
 RenderScene make_render_scene(const Model& model, const Pose& pose, Context& context,
-                              const RenderScene* other = nullptr);
+                              const RenderScene* other = nullptr,
+                              SceneTextures textures = SceneTextures::all);
 
 /// A mesh alone as it lies in its own space, grey, both sides of its triangles shown. Refers to the mesh,
 /// which must outlive it.

@@ -169,7 +169,7 @@ CollapseOutcome collapse_batch(const Model& model, const Batch& batch, std::uint
     collapse(state, target, bound, options, nullptr, context, outcome);
     return outcome;
   }
-  ViewMetric views(state, model, batch.mesh_index, stage.metric, options, context);
+  ViewMetric views(state, model, batch.mesh_index, stage, options, context);
   if (stage.from < batch.triangles) collapse(state, stage.from, bound, options, nullptr, context, outcome);
   if (outcome.stop != StopReason::target) return outcome;
   views.look(batch.importance);
@@ -275,14 +275,18 @@ OptionList describe(SimplifyOptions& o) {
        "time.",
        choice(o.metric, {"auto", "quadric", "visibility", "entropy", "polygon-entropy", "image"}), ""},
       {"metric-from",
-       "Collapse by quadrics until so many times the target are left, and by the metric from there on; 3 for "
+       "Collapse by quadrics until so many times the target are left, and by the metric from there on; 2 for "
        "image, from the beginning for the entropies.",
        &o.metric_from, "times the target", 1, infinity},
       {"cull-hidden",
        "First drop all triangles that none of the views sees; around the model many more views look than "
        "--views says.",
        &o.cull_hidden, ""},
-      {"view-size", "Width and height of the views of a metric.", &o.view_size, "pixels", 16, 2048},
+      {"view-size",
+       "Width and height of the views of a metric; 256, for image less if so few triangles are asked for "
+       "that "
+       "it does.",
+       &o.view_size, "pixels", 16, 2048},
       {"image-pass", "What the metric image compares: base colour alone, or under light.",
        choice(o.image_pass, {"base-color", "lit"}), ""},
   };

@@ -61,11 +61,12 @@ struct SimplifyOptions {
   bool lock_boundary = false;
   Metric metric = Metric::automatic;
   /// The metric begins when so many times the triangles are left that are asked for; until then the quadric
-  /// error decides. None: 3 for the image, from the first collapse on for the entropies.
+  /// error decides. None: 2 for the image, from the first collapse on for the entropies.
   std::optional<double> metric_from;
   /// Where the other metrics look from: around the scene at rest, perspective.
   ViewOptions views{.set = ViewSet::dodecahedron};
-  std::int64_t view_size = 256;  ///< Pixels along each side of a view.
+  /// Pixels along each side of a view. None: 256, or fewer for the image of so few triangles that they do.
+  std::optional<std::int64_t> view_size;
   ImagePass image_pass = ImagePass::lit;
   SegmentOptions regions;  ///< Of textures, for `Metric::entropy`.
   /// Drop the triangles that none of `views` sees (hidden_faces.h), before anything collapses.

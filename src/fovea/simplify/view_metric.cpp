@@ -29,17 +29,17 @@ PixelContent content_of(Metric metric, ImagePass pass) {
 }  // namespace
 
 ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
-                       std::span<const std::size_t> mesh_index, Metric metric, const SimplifyOptions& options,
-                       Context& context)
+                       std::span<const std::size_t> mesh_index, const MetricStage& stage,
+                       const SimplifyOptions& options, Context& context)
     : state_(state),
       context_(context),
       model_(model),
       mesh_index_(mesh_index),
       placement_(options.placement),
-      content_(content_of(metric, options.image_pass)),
-      size_(static_cast<int>(options.view_size)),
+      content_(content_of(stage.metric, options.image_pass)),
+      size_(stage.view_size),
       pose_(rest_pose(model)),
-      scene_(make_render_scene(model, pose_, context)),
+      scene_(make_render_scene(model, pose_, context, nullptr, SceneTextures::base_and_finish)),
       views_(views_of(options.views, model, pose_, scene_.sphere)) {
   if (static_cast<double>(views_.size()) * size_ * size_ > kMostPixels) {
     throw Error(ErrorKind::limit,

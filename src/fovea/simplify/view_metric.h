@@ -9,6 +9,7 @@
 #include "fovea/model/model.h"
 #include "fovea/simplify/edge_cost.h"
 #include "fovea/simplify/face_values.h"
+#include "fovea/simplify/metric_stage.h"
 #include "fovea/simplify/shown_surface.h"
 #include "fovea/simplify/simplify.h"
 #include "fovea/simplify/view_cost.h"
@@ -23,10 +24,10 @@ namespace fovea {
 /// changes around an edge have outdated are known; so an edge is priced again only when it comes up.
 class ViewMetric {
  public:
-  /// `metric` is one by views. Takes the pictures that results are compared with, of the meshes of `state` as
-  /// they are now. Their numbers in the model are `mesh_index`. All must outlive this.
+  /// `stage` has a metric by views. Takes the pictures that results are compared with, of the meshes of
+  /// `state` as they are now. Their numbers in the model are `mesh_index`. All must outlive this.
   ViewMetric(const CollapseState& state, const Model& model, std::span<const std::size_t> mesh_index,
-             Metric metric, const SimplifyOptions& options, Context& context);
+             const MetricStage& stage, const SimplifyOptions& options, Context& context);
 
   /// Draws what is left of the meshes; from now on prices can be asked for. `importance` are the fields that
   /// the state was made with.
