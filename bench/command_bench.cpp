@@ -63,19 +63,19 @@ std::string left(const fs::path& path) {
 
 double megabytes(const Cost& cost) { return static_cast<double>(cost.peak_bytes) / 1e6; }
 
-void print_row(const Tools& tools, const fs::path& model, double ratio) {
+void print_row(const Tools& tools, const fs::path& model, double ratio, const std::string& metric) {
   const std::string target = fmt::format("{}", ratio);
   const fs::path ours = tools.output / "fovea.glb", theirs = tools.output / "gltfpack.glb";
   const int not_reached = 8;
   const Cost a = measure_command({tools.fovea, "simplify", model.string(), "-o", ours.string(), "--ratio",
-                                  target, "--threads", "1", "--quiet", "--force"},
+                                  target, "--metric", metric, "--threads", "1", "--quiet", "--force"},
                                  kRepeats, {not_reached});
   const Cost b = measure_command(
       {tools.gltfpack, "-i", model.string(), "-o", theirs.string(), "-si", target, "-se", "1", "-sv", "-noq"},
       kRepeats);
   fmt::print(
-      "| {} | {} | {:.0f} % | {} / {} | {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f}× | {:.0f} / {:.0f} |\n",
-      model.stem().string(), triangles_in(model), 100 * ratio, left(ours), left(theirs), a.cpu_seconds,
+      "| {} | {} | {:.0f} % | {} | {} / {} | {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f}× | {:.0f} / {:.0f} |\n",
+      model.stem().string(), triangles_in(model), 100 * ratio, metric, left(ours), left(theirs), a.cpu_seconds,
       b.cpu_seconds, a.wall_seconds, b.wall_seconds, b.cpu_seconds / a.cpu_seconds, megabytes(a),
       megabytes(b));
   std::fflush(stdout);
@@ -85,11 +85,13 @@ void print_table(const Tools& tools, const std::vector<fs::path>& models) {
   fmt::print(
       "Whole commands, start-up and files included; fovea on one thread; best of {}. Above 1× fovea needs "
       "less CPU time.\n\n"
-      "| model | triangles | to | left: fovea / gltfpack | CPU s | wall s | fovea : gltfpack | peak MB |\n"
-      "|---|--:|--:|---|--:|--:|--:|--:|\n",
+      "| model | triangles | to | metric | left: fovea / gltfpack | CPU s | wall s | fovea : gltfpack | peak MB |\n"
+      "|---|--:|--:|---|---|--:|--:|--:|--:|\n",
       kRepeats);
   for (const fs::path& model : models) {
-    for (const double ratio : {0.5, 0.1, 0.02}) print_row(tools, model, ratio);
+    for (const double ratio : {0.5, 0.1, 0.02}) {
+      for (const char* metric : {"quadric", "auto"}) print_row(tools, model, ratio, metric);
+    }
   }
 }
 

@@ -245,6 +245,7 @@ std::vector<std::array<double, 2>> relative_flips(const Model& model, const std:
   Context context;
   context.threads = kThreads;
   SimplifyOptions options;
+  options.metric = Metric::quadric;
   options.ratio = ratio;
   std::vector<Model> models;
   for (const Variant& variant : tried) {

@@ -63,6 +63,7 @@ Cost measure_fovea(const Case& row, int threads) {
           Context context;
           context.threads = threads;
           SimplifyOptions options;
+          options.metric = Metric::quadric;  // as the peers
           options.ratio = row.ratio;
           return simplify(*model, options, {}, context).triangles_after;
         };

@@ -6,6 +6,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/simplify/simplify.h"
+#include "support/by_quadrics.h"
 #include "support/meshes.h"
 
 namespace fovea {
@@ -20,7 +21,7 @@ CompareOptions quick() {
 }
 
 Model simplified(const Model& model, double ratio) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = ratio;
   Context context;
   return simplify(model, options, {}, context).model;

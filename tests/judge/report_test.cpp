@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fovea/simplify/simplify.h"
+#include "support/by_quadrics.h"
 #include "support/meshes.h"
 
 namespace fovea {
@@ -20,7 +21,7 @@ class Report : public ::testing::Test {
     options_.views.set = ViewSet::tetrahedron;
     options_.size = 48;
     options_.distance_samples = 200;
-    SimplifyOptions simplify_options;
+    SimplifyOptions simplify_options = test::by_quadrics();
     simplify_options.ratio = 0.1;
     small_ = simplify(model_, simplify_options, {}, context_).model;
   }

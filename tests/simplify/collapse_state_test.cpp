@@ -57,7 +57,7 @@ TEST(CollapseState, AScatteredMeshSimplifiesLikeAnother) {
   std::size_t locked = 0;
   while (!(mesh.positions[locked].x > 0.3f && mesh.positions[locked].x < 0.4f)) ++locked;
   weights[locked] = std::numeric_limits<float>::infinity();
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.02;
   Context context;
   const SimplifyResult result = simplify(test::model_of(mesh), options, {VertexField(weights)}, context);

@@ -4,13 +4,14 @@
 
 #include "fovea/base/error.h"
 #include "fovea/simplify/simplify.h"
+#include "support/by_quadrics.h"
 #include "support/meshes.h"
 
 namespace fovea {
 namespace {
 
 SimplifyResult run(const Model& model, std::int64_t triangles) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.triangles = triangles;
   Context context;
   context.threads = 1;

@@ -11,6 +11,7 @@
 #include "fovea/sample/sample.h"
 #include "fovea/simplify/auto_saliency.h"
 #include "oracle/saliency_oracle.h"
+#include "support/by_quadrics.h"
 #include "support/meshes.h"
 #include "support/reading.h"
 
@@ -143,7 +144,7 @@ TEST(Salient, TheStrongestWeightsAreStillNumbers) {
   const Model model = test::model_of(test::torus(20, 10));
   auto saliency = random_saliency(model);
   std::fill_n(saliency[0].values().begin(), 20, 0.0f);  // below the percentile
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.3;
   for (const SaliencyWeighting weighting : kWeightings) {
     const Importance found = importance(model, saliency, {weighting, 10});
@@ -191,7 +192,7 @@ TEST(Salient, KeepsTrianglesWherePeopleLook) {
   const TriMesh& mesh = model.meshes[0].surface;
   std::vector<VertexField> saliency{VertexField(mesh.vertex_count())};
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) saliency[0].values()[v] = mesh.positions[v].x > 0.5f;
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.1;
   const auto share_right = [&](const Importance& weights) {
     Context context;
@@ -224,7 +225,7 @@ Model small_vase() {
 }
 
 AutoSaliency chosen(const Model& model, double ratio, const Importance& own = {}, int threads = 1) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = ratio;
   Context context;
   context.threads = threads;
@@ -301,7 +302,7 @@ TEST(AutoSaliency, WhatIsGivenCountsInEveryTrial) {
 TEST(AutoSaliency, CanBeCancelled) {
   Context context;
   context.progress = [](std::string_view phase, double) { return phase != "choose saliency"; };
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.5;
   const Model model = test::model_of(test::torus(24, 12));
   expect_error([&] { choose_saliency(model, options, {}, {}, context); }, ErrorKind::cancelled, "");

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "fovea/base/error.h"
+#include "support/by_quadrics.h"
 #include "support/meshes.h"
 
 namespace fovea {
@@ -22,7 +23,7 @@ SimplifyResult run(const Model& model, const SimplifyOptions& options, const Imp
 }
 
 SimplifyResult run_ratio(const Model& model, double ratio) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = ratio;
   return run(model, options);
 }
@@ -72,7 +73,7 @@ TEST(Simplify, KeepsEverythingAtRatioOne) {
 }
 
 TEST(Simplify, TheLargerOfTwoCountsWins) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.5;
   options.triangles = 100;
   const SimplifyResult result = run(test::model_of(test::icosphere(3)), options);  // 1280 triangles
@@ -82,7 +83,7 @@ TEST(Simplify, TheLargerOfTwoCountsWins) {
 }
 
 TEST(Simplify, StopsAtTheErrorBound) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.error = 0.01;
   const SimplifyResult result = run(test::model_of(test::icosphere(4)), options);
   EXPECT_EQ(result.stop, StopReason::error);
@@ -93,7 +94,7 @@ TEST(Simplify, StopsAtTheErrorBound) {
 }
 
 TEST(Simplify, ErrorAbsIsInSceneUnits) {
-  SimplifyOptions relative, absolute;
+  SimplifyOptions relative = test::by_quadrics(), absolute = test::by_quadrics();
   relative.error = 0.01;
   absolute.error_abs = 0.01 * 2 * std::sqrt(3.0);  // the unit sphere's box has diagonal 2 √3
   const Model model = test::model_of(test::icosphere(3));
@@ -120,7 +121,7 @@ TEST(Simplify, WithoutATargetThereIsAnError) {
 
 TEST(Simplify, RefusesValuesOutOfRange) {
   Context context;
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 1.5;
   EXPECT_THROW(simplify(test::model_of(test::cube()), options, {}, context), Error);
 }
@@ -132,7 +133,7 @@ TEST(Simplify, AnEmptyModelIsDoneAtOnce) {
 }
 
 TEST(Simplify, SaysWhatIsInTheWay) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.triangles = 0;
   options.keep_topology = true;
   const SimplifyResult result = run(test::model_of(test::icosphere(1)), options);
@@ -147,7 +148,7 @@ TEST(Simplify, CancellingGivesTheLevelReached) {
   Context context;
   int calls = 0;
   context.progress = [&](std::string_view, double) { return ++calls < 2; };
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.001;
   const SimplifyResult result = simplify(test::model_of(test::icosphere(6)), options, {}, context);
   EXPECT_EQ(result.stop, StopReason::cancelled);
@@ -181,7 +182,7 @@ TEST(Simplify, HalfEdgeKeepsOriginalVertices) {
   const TriMesh mesh = test::wavy_grid(16, 16, 0.1);
   std::set<std::array<float, 3>> original;
   for (const Vec3f& p : mesh.positions) original.insert({p.x, p.y, p.z});
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.2;
   options.placement = Placement::half_edge;
   const SimplifyResult result = run(test::model_of(mesh), options);
@@ -191,7 +192,7 @@ TEST(Simplify, HalfEdgeKeepsOriginalVertices) {
 }
 
 TEST(Simplify, OptimalPlacementIsCloserThanHalfEdge) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.1;
   const Model model = test::model_of(test::icosphere(4));
   const double optimal = run(model, options).error_rel;
@@ -212,7 +213,7 @@ TEST(Simplify, DoesNotDependOnPlaceOrSize) {
 
 TEST(Simplify, SameBytesForAnyNumberOfThreads) {
   const Model model = test::model_of({test::torus(64, 32), test::wavy_grid(50, 50, 0.05)});
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.1;
   Context one, four;
   one.threads = 1;
@@ -239,7 +240,7 @@ TEST(Simplify, AnOpenBoundaryIsSimplifiedAndStaysInPlace) {
 }
 
 TEST(Simplify, LockBoundaryKeepsEveryBoundaryVertex) {
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.05;
   options.lock_boundary = true;
   const SimplifyResult result = run(test::model_of(test::open_cylinder(32, 16)), options);
@@ -332,7 +333,7 @@ TEST(Simplify, AChartThatEndsLeavesNoErrorBehind) {
                 corner(x, y + 1, offset));
     }
   }
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.02;
   options.seam_weight = 0;  // nothing but values
   const SimplifyResult result = run(test::model_of(test::weld_part(part.part())), options);
@@ -405,7 +406,7 @@ TEST(Simplify, ImportanceKeepsTriangles) {
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     if (mesh.positions[v].x < 0.5f) field[VertexId{v}] = 100.0f;
   }
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.2;
   const auto left = [](const TriMesh& m) {
     return std::count_if(m.positions.begin(), m.positions.end(), [](Vec3f p) { return p.x < 0.5f; });
@@ -423,7 +424,7 @@ TEST(Simplify, InfiniteImportanceLocks) {
     field[VertexId{v}] = std::numeric_limits<float>::infinity();
     locked.push_back(mesh.positions[v]);
   }
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.1;
   const SimplifyResult result = run(test::model_of(mesh), options, {field});
   for (const Vec3f& p : locked) {
@@ -433,7 +434,7 @@ TEST(Simplify, InfiniteImportanceLocks) {
 
 TEST(Simplify, RefusesImportanceOfTheWrongSizeOrSign) {
   Context context;
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.5;
   const Model model = test::model_of(test::cube());
   EXPECT_THROW(simplify(model, options, {VertexField(3, 1.0f)}, context), Error);
@@ -452,7 +453,7 @@ TEST(Simplify, TrianglesGoWhereTheSceneNeedsThem) {
   }
   const SimplifyResult scene = run_ratio(model, 0.3);
   EXPECT_GT(surface(scene, 0).face_count(), 5 * surface(scene, 1).face_count());
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.ratio = 0.3;
   options.per_mesh = true;
   const SimplifyResult apart = run(model, options);
@@ -461,7 +462,7 @@ TEST(Simplify, TrianglesGoWhereTheSceneNeedsThem) {
 
 TEST(Simplify, SmallComponentsVanishWhenTheirErrorSaysSo) {
   Model model = test::model_of(test::tetrahedra(8));  // sizes 1, 1/2, … 1/128
-  SimplifyOptions options;
+  SimplifyOptions options = test::by_quadrics();
   options.triangles = 12;
   const SimplifyResult result = run(model, options);
   EXPECT_EQ(result.triangles_after, 12u);

@@ -13,6 +13,7 @@
 #include "fovea/sample/sample.h"
 #include "fovea/simplify/collapse_engine.h"
 #include "fovea/simplify/view_metric.h"
+#include "support/by_quadrics.h"
 
 namespace fovea {
 namespace {
@@ -166,7 +167,7 @@ TEST(ViewCost, SaysWhatTwoDrawingsDifferBy) {
     for (const char* name : {"vase", "arm"}) {
       // Coarse, so that most collapses show.
       Context context;
-      SimplifyOptions coarse;
+      SimplifyOptions coarse = test::by_quadrics();
       coarse.ratio = 0.2;
       const Model model = simplify(sample(name), coarse, {}, context).model;
       for (std::uint64_t seed = 1; seed <= 6; ++seed) {
