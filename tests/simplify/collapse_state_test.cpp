@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collapse_states.h"
+#include "support/by_quadrics.h"
 
 namespace fovea {
 namespace {

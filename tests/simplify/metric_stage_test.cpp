@@ -25,7 +25,7 @@ TEST(MetricStage, AutomaticIsTheImageFromTwiceTheTargetOn) {
 
 TEST(MetricStage, AutomaticIsQuadricWherePicturesSayLittle) {
   EXPECT_EQ(stage(Metric::automatic, 0, 10000).metric, Metric::quadric) << "no count is asked for";
-  EXPECT_EQ(stage(Metric::automatic, 60000, 100000).metric, Metric::quadric) << "less than a pixel each";
+  EXPECT_EQ(stage(Metric::automatic, 12001, 100000).metric, Metric::quadric) << "a few pixels each";
   SimplifyOptions apart;
   apart.per_mesh = true;
   EXPECT_EQ(metric_stage(apart, 1000, 10000).metric, Metric::quadric);
@@ -43,7 +43,7 @@ TEST(MetricStage, EntropiesDecideFromTheBeginningUnlessTold) {
 TEST(MetricStage, ViewsOfTheImageGrowWithTheTarget) {
   EXPECT_EQ(stage(Metric::image, 10, 10000).view_size, 64);
   EXPECT_EQ(stage(Metric::image, 420, 10000).view_size, 160);
-  EXPECT_EQ(stage(Metric::image, 5000, 10000).view_size, 256);
+  EXPECT_EQ(stage(Metric::image, 5000, 20000).view_size, 256);
   EXPECT_EQ(stage(Metric::image, 0, 10000).view_size, 256);
   EXPECT_EQ(stage(Metric::entropy, 10, 10000).view_size, 256) << "as its paper";
   SimplifyOptions options;

@@ -107,6 +107,11 @@ struct CollapseState {
   FaceComponents components;
   std::vector<VanishCandidate> vanish;  // [#components]
 
+  /// Faces of a mesh, those that are gone among them.
+  std::uint32_t face_count(std::size_t slot) const {
+    const auto all = static_cast<std::uint32_t>(mesh_face.size());
+    return (slot + 1 < slots.size() ? slots[slot + 1].first_face : all) - slots[slot].first_face;
+  }
   std::uint32_t slot_of_vertex(std::uint32_t v) const {
     return slots.size() == 1 ? 0 : find_slot(v, &MeshSlot::first_vertex);
   }

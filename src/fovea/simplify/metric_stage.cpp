@@ -10,7 +10,7 @@ namespace fovea {
 
 namespace {
 
-constexpr std::uint64_t kMostSeen = 50000;
+constexpr std::uint64_t kMostSeen = 12000;
 constexpr double kImageFrom = 2;
 constexpr int kLargestView = 256, kSmallestView = 64, kViewStep = 16;
 /// Of a view, for each triangle of the target.

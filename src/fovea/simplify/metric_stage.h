@@ -17,10 +17,10 @@ struct MetricStage {
 
 /// What the options mean for `total` triangles of which `target` are to be left, 0 without a target.
 ///
-/// `automatic` is the image, from twice the target on; but quadrics for targets of more than 50,000
-/// triangles, of which each covers hardly a pixel of a view, without a target, and for meshes one by one.
-/// Views of the image are no larger than gives the mean triangle of the target some 400 pixels over 20 views
-/// that a model half fills. Why twice and why 400: docs/simplification.md.
+/// `automatic` is the image, from twice the target on; but quadrics for targets of more than 12,000
+/// triangles, of which each covers two or three pixels of a view, without a target, and for meshes one by
+/// one. Views of the image are no larger than gives the mean triangle of the target some 400 pixels over 20
+/// views that a model half fills. Why twice and why 400: docs/simplification.md.
 MetricStage metric_stage(const SimplifyOptions& options, std::uint64_t target, std::uint64_t total);
 
 /// Weights of vertices by how much of the surface around them views see, for the metric `visibility`

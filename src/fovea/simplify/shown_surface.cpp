@@ -41,9 +41,9 @@ ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
         showing.bent.push_back(bent[state.mesh_vertex[state.slots[s].first_vertex + v].index()]);
       showings_.push_back(std::move(showing));
       vertices += mesh.vertex_count();
-      faces += mesh.face_count();
+      faces += state.face_count(s);
     }
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    for (std::size_t f = 0; f < state.face_count(s); ++f) {
       const FaceId id = state.mesh_face[state.slots[s].first_face + f];
       face_part_.push_back(mesh.face_part[id.index()]);
       const int material = mesh.parts[face_part_.back()].material;

@@ -120,9 +120,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
       }
       for (const Showing& showing : shown.showings()) {
         const std::uint32_t first = state.slots[showing.slot].first_face;
-        const std::uint32_t last = showing.slot + 1 < state.slots.size()
-                                       ? state.slots[showing.slot + 1].first_face
-                                       : static_cast<std::uint32_t>(state.mesh.faces.size());
+        const std::uint32_t last = first + state.face_count(showing.slot);
         for (std::uint32_t f = first; f < last; ++f) {
           if (state.mesh.face_alive(f)) put_in(v, showing, f);
         }
@@ -185,30 +183,20 @@ void ViewCost::take_out(std::size_t v, const Showing& showing, std::uint32_t f) 
                     });
 }
 
-void ViewCost::put_in(std::span<const std::uint32_t> faces, const Context& context) {
-  for_views(context, [&](std::size_t v) {
+void ViewCost::put_in(std::span<const std::uint32_t> faces) {
+  for (std::size_t v = 0; v < views_.size(); ++v) {
     for (const std::uint32_t f : faces) {
       for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) put_in(v, showing, f);
     }
-  });
+  }
 }
 
-void ViewCost::take_out(std::span<const std::uint32_t> faces, const Context& context) {
-  for_views(context, [&](std::size_t v) {
+void ViewCost::take_out(std::span<const std::uint32_t> faces) {
+  for (std::size_t v = 0; v < views_.size(); ++v) {
     for (const std::uint32_t f : faces) {
       for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) take_out(v, showing, f);
     }
-  });
-}
-
-/// Calls f(view) for all of them; a part for each thread, as it is little work.
-template <class F>
-void ViewCost::for_views(const Context& context, F&& f) {
-  const auto threads = static_cast<std::size_t>(context.thread_count());
-  parallel_for(context, views_.size(), (views_.size() + threads - 1) / threads,
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t v = begin; v < end; ++v) f(v);
-               });
+  }
 }
 
 /// Where p lies between a and b, 0 … 1.

@@ -63,13 +63,12 @@ class ViewCost {
   /// What it changes if some faces go, of one mesh.
   double change_without(std::span<const std::uint32_t> faces, Scratch& scratch) const;
 
-  /// To be called before anything changes, with all faces that will: takes them out of the lists, views in
-  /// parallel.
-  void take_out(std::span<const std::uint32_t> faces, const Context& context);
+  /// To be called before anything changes, with all faces that will: takes them out of the lists.
+  void take_out(std::span<const std::uint32_t> faces);
   /// To be called before a collapse of a and b to p changes the mesh, after which b is left.
   void move(std::uint32_t a, std::uint32_t b, Vec3d p);
   /// To be called when all has changed: puts faces into the lists as they are now.
-  void put_in(std::span<const std::uint32_t> faces, const Context& context);
+  void put_in(std::span<const std::uint32_t> faces);
 
   /// The measure of what is shown now: the squared error of all pixels, or the sum of the views' entropies.
   double total() const;
@@ -80,8 +79,6 @@ class ViewCost {
   std::size_t bytes() const;
 
  private:
-  template <class F>
-  void for_views(const Context& context, F&& f);
   struct ViewState {
     FragmentLists lists;               // with notes, see below
     std::vector<std::uint32_t> count;  // [#regions], their pixels, those of the background first (entropy)

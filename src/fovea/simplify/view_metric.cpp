@@ -133,7 +133,7 @@ void ViewMetric::before_collapse(std::uint32_t a, std::uint32_t b, Vec3d p) {
       if (v == a || (at_c.next != a && at_c.previous != a)) faces_.push_back(c / 3);
     }
   }
-  cost_->take_out(faces_, context_);
+  cost_->take_out(faces_);
   cost_->move(a, b, p);
 }
 
@@ -146,7 +146,7 @@ void ViewMetric::after_collapse(std::uint32_t a, std::uint32_t b) {
     const CornerView at_c = state_.mesh.view(c);
     changed_[at_c.next] = changed_[at_c.previous] = collapses_;
   }
-  cost_->put_in(faces_, context_);
+  cost_->put_in(faces_);
   if (!importance_.empty()) importance_[b] = std::max(importance_[a], importance_[b]);
 }
 

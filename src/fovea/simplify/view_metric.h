@@ -59,7 +59,7 @@ class ViewMetric {
   /// To be called around a collapse, see ViewCost.
   void before_collapse(std::uint32_t a, std::uint32_t b, Vec3d p);
   void after_collapse(std::uint32_t a, std::uint32_t b);
-  void lose(std::span<const std::uint32_t> faces) { cost_->take_out(faces, context_); }
+  void lose(std::span<const std::uint32_t> faces) { cost_->take_out(faces); }
 
   const ViewCost& cost() const { return *cost_; }
 
