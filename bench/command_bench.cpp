@@ -74,10 +74,11 @@ void print_row(const Tools& tools, const fs::path& model, double ratio, const st
       {tools.gltfpack, "-i", model.string(), "-o", theirs.string(), "-si", target, "-se", "1", "-sv", "-noq"},
       kRepeats);
   fmt::print(
-      "| {} | {} | {:.0f} % | {} | {} / {} | {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f}× | {:.0f} / {:.0f} |\n",
-      model.stem().string(), triangles_in(model), 100 * ratio, metric, left(ours), left(theirs), a.cpu_seconds,
-      b.cpu_seconds, a.wall_seconds, b.wall_seconds, b.cpu_seconds / a.cpu_seconds, megabytes(a),
-      megabytes(b));
+      "| {} | {} | {:.0f} % | {} | {} / {} | {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f}× | {:.0f} / {:.0f} "
+      "|\n",
+      model.stem().string(), triangles_in(model), 100 * ratio, metric, left(ours), left(theirs),
+      a.cpu_seconds, b.cpu_seconds, a.wall_seconds, b.wall_seconds, b.cpu_seconds / a.cpu_seconds,
+      megabytes(a), megabytes(b));
   std::fflush(stdout);
 }
 
@@ -85,7 +86,8 @@ void print_table(const Tools& tools, const std::vector<fs::path>& models) {
   fmt::print(
       "Whole commands, start-up and files included; fovea on one thread; best of {}. Above 1× fovea needs "
       "less CPU time.\n\n"
-      "| model | triangles | to | metric | left: fovea / gltfpack | CPU s | wall s | fovea : gltfpack | peak MB |\n"
+      "| model | triangles | to | metric | left: fovea / gltfpack | CPU s | wall s | fovea : gltfpack | peak "
+      "MB |\n"
       "|---|--:|--:|---|---|--:|--:|--:|--:|\n",
       kRepeats);
   for (const fs::path& model : models) {
