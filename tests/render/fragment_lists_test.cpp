@@ -59,7 +59,7 @@ auto rows(Value value) {
 auto shows(std::uint32_t triangle) {
   return rows([triangle](int x, int y, std::uint32_t& value) { return shown(triangle, x, y, value); });
 }
-const auto solid = rows([](int, int, std::uint32_t&) { return true; });
+const auto kSolid = rows([](int, int, std::uint32_t&) { return true; });
 
 /// Inside by the sign of three cross products; on an edge only at the top or left. Literal and slow.
 bool is_inside(Corners v, int pixel_x, int pixel_y) {
@@ -243,9 +243,9 @@ TEST(FragmentLists, SayNothingOfWhatIsHidden) {
   FragmentLists lists(4, 4);
   int changes = 0;
   const auto count = [&](auto&&...) { ++changes; };
-  lists.insert(1, wall(2), solid, count);
+  lists.insert(1, wall(2), kSolid, count);
   EXPECT_EQ(changes, 16);
-  lists.insert(2, wall(1), solid, count);
+  lists.insert(2, wall(1), kSolid, count);
   lists.remove(2, wall(1), count);
   EXPECT_EQ(changes, 16);
   lists.remove(1, wall(2), count);
@@ -254,7 +254,7 @@ TEST(FragmentLists, SayNothingOfWhatIsHidden) {
 
 TEST(FragmentLists, OfEquallyNearTheSmallerNumberIsInFront) {
   FragmentLists lists(3, 2);
-  for (const std::uint32_t t : {5u, 9u, 2u, 7u}) lists.insert(t, wall(1), solid);
+  for (const std::uint32_t t : {5u, 9u, 2u, 7u}) lists.insert(t, wall(1), kSolid);
   for (std::size_t p = 0; p < 6; ++p) {
     std::vector<std::uint32_t> order;
     for (const Fragment& fragment : lists.at(p)) order.push_back(fragment.triangle);
@@ -268,7 +268,7 @@ TEST(FragmentLists, WhatLiesBehindAHoleIsSeen) {
   Front front(lists);
   lists.insert(1, wall(2), left_half, front.note());
   EXPECT_TRUE(lists.at(3).empty());
-  lists.insert(2, wall(1), solid, front.note());
+  lists.insert(2, wall(1), kSolid, front.note());
   EXPECT_EQ(lists.at(1)[0].triangle, 1u);
   EXPECT_EQ(lists.at(2)[0].triangle, 2u);
   // Takes nothing away where it has its hole.
@@ -300,17 +300,17 @@ TEST(FragmentLists, TrianglesOffThePictureOrWithoutAreaAreNowhere) {
   };
   FragmentLists lists(4, 4);
   for (const Corners& v : nowhere) {
-    lists.insert(1, v, solid);
+    lists.insert(1, v, kSolid);
     EXPECT_EQ(lists.size(), 0u);
     lists.remove(1, v);
   }
-  lists.insert(2, {{{-kFar, -kFar, 1}, {kFar, -kFar, 1}, {0, kFar, 1}}}, solid);
+  lists.insert(2, {{{-kFar, -kFar, 1}, {kFar, -kFar, 1}, {0, kFar, 1}}}, kSolid);
   EXPECT_EQ(lists.size(), 16u) << "corners may be far away";
 }
 
 TEST(FragmentLists, APictureWithoutPixelsHoldsNothing) {
   FragmentLists lists(0, 0);
-  lists.insert(1, wall(1), solid);
+  lists.insert(1, wall(1), kSolid);
   lists.remove(1, wall(1));
   EXPECT_EQ(lists.size(), 0u);
 }
@@ -331,7 +331,7 @@ TEST(FragmentLists, TakeAFewTimesWhatTheirFragmentsNeed) {
   FragmentLists lists(64, 64);
   EXPECT_EQ(lists.bytes(), 40 * kPixels);
   for (std::uint32_t t = 0; t < 40; ++t) {
-    lists.insert(t, wall(static_cast<float>(t % 7)), solid);
+    lists.insert(t, wall(static_cast<float>(t % 7)), kSolid);
     EXPECT_GE(lists.bytes(), 40 * kPixels + 12 * lists.size());
     // Rooms of 1, 2, 4 … are at most four times the fragments; the pool grows by doubling.
     EXPECT_LE(lists.bytes(), 40 * kPixels + 9 * 12 * lists.size());

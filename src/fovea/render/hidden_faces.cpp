@@ -38,8 +38,8 @@ struct PosedFaces {
 };
 
 const Material& material_of(const Model& model, const Part& part) {
-  static const Material plain;
-  return part.material >= 0 ? model.materials[static_cast<std::size_t>(part.material)] : plain;
+  static const Material kPlain;
+  return part.material >= 0 ? model.materials[static_cast<std::size_t>(part.material)] : kPlain;
 }
 
 bool blocks_sight(const Material& material) {
