@@ -82,6 +82,12 @@ TEST(HiddenFaces, AStripThatShowsSavesALargeFace) {
   EXPECT_TRUE(found[1].empty());
 }
 
+TEST(HiddenFaces, WhatIsShownAsAPointIsKept) {
+  Model model = test::model_of(test::cube());
+  model.nodes[0].scale = {0, 0, 0};
+  EXPECT_TRUE(hidden(model)[0].empty());
+}
+
 TEST(HiddenFaces, MeshesThatNothingShowsHaveNone) {
   Model model = ball_in_ball();
   model.nodes[1].mesh = -1;

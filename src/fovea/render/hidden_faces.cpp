@@ -104,6 +104,7 @@ class Sight {
         occlusion_(posed.blockers, posed.double_sided_block) {}
 
   bool sees(std::size_t f) const {
+    if (!(radius_ > 0)) return true;  // shown as a point
     const auto& t = posed_.all.triangles[f];
     const std::array<Vec3d, 3> p{posed_.all.position(t[0]), posed_.all.position(t[1]),
                                  posed_.all.position(t[2])};
