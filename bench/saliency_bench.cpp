@@ -1,6 +1,7 @@
 // What saliency costs, and what it does for simplification, as Markdown.
 // saliency_bench [--quick] [MODEL-NAME...]   times
-// saliency_bench --quality [MODEL-NAME...]   simplification with and without it; some minutes
+// saliency_bench --quality [--default-metric] [MODEL-NAME...]   quadrics, or what looks at pictures, with and
+//     without it; some minutes
 // saliency_bench --distances [MODEL-NAME...]   mesh saliency by other distances against exact geodesics;
 // minutes
 // saliency_bench --geodesics [MODEL-NAME...]   exact geodesics against CGAL's; minutes
@@ -219,7 +220,15 @@ Variant weighted(const std::string& name, const SaliencyOptions& saliency, const
           }};
 }
 
-std::vector<Variant> variants() {
+Variant chosen_by(const std::string& name, Metric metric) {
+  return {name, [=](const Model& model, SimplifyOptions options, Context& context) {
+            options.metric = metric;
+            return choose_saliency(model, options, {}, {}, context).importance;
+          }};
+}
+
+/// By views only the gentle ways are tried: by quadrics the others lose everywhere.
+std::vector<Variant> variants(Metric metric) {
   std::vector<Variant> all{{"none", [](auto&&...) { return Importance(); }}};
   const std::pair<const char*, SaliencyPreset> presets[] = {
       {"fovea", SaliencyPreset::fovea}, {"yang", SaliencyPreset::yang}, {"lee", SaliencyPreset::lee}};
@@ -230,22 +239,23 @@ std::vector<Variant> variants() {
       {"lee", {SaliencyWeighting::lee, 1}},
       {"munaretti", {SaliencyWeighting::munaretti, 1}}};
   for (const auto& [name, which] : presets) {
-    for (const auto& [weighting, salient] : weightings)
-      all.push_back(weighted(fmt::format("{} | {}", name, weighting), preset(which), salient));
+    for (const auto& [weighting, salient] : weightings) {
+      if (metric == Metric::quadric || salient.weighting == SaliencyWeighting::yang)
+        all.push_back(weighted(fmt::format("{} | {}", name, weighting), preset(which), salient));
+    }
   }
-  all.push_back({"auto | yang", [](const Model& model, const SimplifyOptions& options, Context& context) {
-                   return choose_saliency(model, options, {}, {}, context).importance;
-                 }});
+  all.push_back(chosen_by("auto | yang", metric));
+  if (metric != Metric::quadric) all.push_back(chosen_by("auto, by quadrics | yang", Metric::quadric));
   return all;
 }
 
 /// FLIP of each variant over that of the first, base colour and lit.
 std::vector<std::array<double, 2>> relative_flips(const Model& model, const std::vector<Variant>& tried,
-                                                  double ratio) {
+                                                  Metric metric, double ratio) {
   Context context;
   context.threads = kThreads;
   SimplifyOptions options;
-  options.metric = Metric::quadric;
+  options.metric = metric;
   options.ratio = ratio;
   std::vector<Model> models;
   for (const Variant& variant : tried) {
@@ -266,8 +276,8 @@ std::vector<std::array<double, 2>> relative_flips(const Model& model, const std:
   return flips;
 }
 
-void print_quality(const std::vector<Subject>& subjects) {
-  const std::vector<Variant> tried = variants();
+void print_quality(const std::vector<Subject>& subjects, Metric metric) {
+  const std::vector<Variant> tried = variants(metric);
   fmt::print(
       "FLIP over that without saliency at equal triangles, 24 views of 256², geometric mean over {} models "
       "(below "
@@ -281,7 +291,7 @@ void print_quality(const std::vector<Subject>& subjects) {
     std::vector<std::array<double, 2>> logs(tried.size());
     std::vector<int> better(tried.size(), 0);
     for (const Subject& subject : subjects) {
-      const auto flips = relative_flips(subject.make(), tried, ratio);
+      const auto flips = relative_flips(subject.make(), tried, metric, ratio);
       for (std::size_t i = 0; i < tried.size(); ++i) {
         for (std::size_t p = 0; p < 2; ++p) {
           logs[i][p] += std::log(flips[i][p]) / static_cast<double>(subjects.size());
@@ -302,6 +312,7 @@ void print_quality(const std::vector<Subject>& subjects) {
 struct Task {
   int repeats = 3;
   bool quality = false;
+  Metric metric = Metric::quadric;
   bool distances = false;
   bool geodesics = false;
   std::vector<std::string> only;
@@ -343,6 +354,8 @@ int run(int count, char** words) {
         task.repeats = 1;
       } else if (std::strcmp(words[i], "--quality") == 0) {
         task.quality = true;
+      } else if (std::strcmp(words[i], "--default-metric") == 0) {
+        task.metric = Metric::automatic;
       } else if (std::strcmp(words[i], "--distances") == 0) {
         task.distances = true;
       } else if (std::strcmp(words[i], "--geodesics") == 0) {
@@ -352,7 +365,7 @@ int run(int count, char** words) {
       }
     }
     if (task.quality) {
-      print_quality(chosen(textured_subjects(), task));
+      print_quality(chosen(textured_subjects(), task), task.metric);
     } else if (task.distances) {
       print_all_distances(chosen(scan_subjects(), task));
     } else if (task.geodesics) {

@@ -168,7 +168,9 @@ std::vector<Subject> textured_subjects() {
                    "textured/MaterialsVariantsShoe.glb", "textured/YcbBanana.glb", "textured/SheenChair.glb",
                    "textured/Duck.glb", "textured/BoomBox.glb", "textured/ExplodingBarrel.glb",
                    "textured/AntiqueCameraBody.glb", "textured/IridescenceLamp.glb",
-                   "textured/AcousticGuitar.glb", "textured/GlamVelvetSofa.glb"});
+                   "textured/AcousticGuitar.glb", "textured/GlamVelvetSofa.glb", "textured/Avocado.glb",
+                   "textured/Suzanne.glb", "textured/LightsPunctualLamp.glb", "textured/StainedGlassLamp.glb",
+                   "textured/ToyCar.glb"});
 }
 
 Subject noise_sphere(std::size_t triangles) {

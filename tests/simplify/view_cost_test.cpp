@@ -164,6 +164,7 @@ std::vector<VertexField> all_locked_but_one(const Model& model, std::uint64_t se
 TEST(ViewCost, SaysWhatTwoDrawingsDifferBy) {
   for (const Metric metric : kMetrics) {
     double changes = 0;
+    int most_pieces = 0;
     for (const char* name : {"vase", "arm"}) {
       // Coarse, so that most collapses show.
       Context context;
@@ -193,10 +194,21 @@ TEST(ViewCost, SaysWhatTwoDrawingsDifferBy) {
           // Whole numbers here, logarithms of doubles there.
           EXPECT_NEAR(predicted, entropy_change(before.views->cost(), fresh->cost()), 1e-9) << name << seed;
         }
+        // Piece by piece it is the same.
+        PartialChange part;
+        int pieces = 0;
+        while (!before.views->cost().is_whole(part)) {
+          const double limit = before.views->cost().amount(part);
+          before.views->cost().add_change(at->a, at->b, p, planned.merge, limit, *planned.scratch, part);
+          ++pieces;
+        }
+        EXPECT_EQ(before.views->cost().amount(part), predicted) << name << seed;
+        most_pieces = std::max(most_pieces, pieces);
         changes += std::abs(predicted);
       }
     }
     EXPECT_GT(changes, 0) << "nothing was tested";
+    EXPECT_GT(most_pieces, 1) << "no sum stopped before the last view";
   }
 }
 

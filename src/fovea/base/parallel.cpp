@@ -5,8 +5,22 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 
 namespace fovea {
+
+namespace {
+
+/// The arena of so many threads. It is kept, as threads come to a new one too late for small work.
+oneapi::tbb::task_arena& arena_of(int threads) {
+  static std::mutex mutex;
+  static std::map<int, oneapi::tbb::task_arena> arenas;
+  const std::lock_guard lock(mutex);
+  return arenas.try_emplace(threads, threads).first->second;
+}
+
+}  // namespace
 
 void parallel_for(const Context& context, std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
@@ -22,8 +36,7 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain,
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) run_chunk(chunk);
     return;
   }
-  oneapi::tbb::task_arena arena(threads);
-  arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
+  arena_of(threads).execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
 }
 
 }  // namespace fovea

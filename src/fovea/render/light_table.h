@@ -11,6 +11,7 @@ namespace fovea {
 /// asks very often. 32 kB.
 class LightTable {
  public:
+  LightTable() = default;  ///< Of nothing; not to be asked.
   LightTable(float metallic, float roughness, Vec3f to_eye);
 
   /// Light is base colour × `tinted` + `white`.

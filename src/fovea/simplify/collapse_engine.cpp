@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,6 +37,8 @@ constexpr std::size_t kTogether = 4;
 constexpr std::size_t kAhead = 64;
 /// Items that are taken from the queue together, so that their memory is fetched together.
 constexpr std::size_t kBatch = 16;
+/// Views are asked until an edge costs so many times what it was queued for, and what was last taken.
+constexpr double kEnough = 1.3;
 
 /// An edge or component that was taken out of the queue.
 struct Due {
@@ -86,8 +89,10 @@ class Engine {
   void drop_dearer();
   void fetch_surroundings() const;
   void price(Due& due);
-  Candidate best_view_place(std::uint32_t e, const Quadric& q, ViewMetric::Memory& memory) const;
-  void price_by_views(std::span<const std::uint32_t> edges);
+  void price_by_views(std::uint32_t e, const Quadric& q, double limit, ViewMetric::Memory& memory);
+  void price_by_views(std::span<const Due> edges);
+  ViewMetric::Memory take_memory();
+  void give_back(ViewMetric::Memory&& memory);
   void take_by_views();
   void try_edge(Due& due);
   bool is_dearer(const Due& due, double price);
@@ -112,13 +117,15 @@ class Engine {
   CollapseQueue queue_;              // edges, then components
   std::vector<std::uint8_t> tries_;  // [#E], refusals since the last change around
   EdgeCost cost_;
-  std::vector<ViewMetric::Memory> memory_;  // [#threads] with views
+  std::vector<ViewMetric::Memory> memory_;  // with views: [#threads], less those in use
+  std::mutex memory_mutex_;
   Legality legality_;
   ValueMerge merge_;
   std::vector<Due> batch_;
   std::vector<std::uint32_t> changed_;  // vertices merged since the batch was priced
   CollapseOutcome& outcome_;
   CollapseStepper stepper_;
+  double level_ = 0;  // with views: what the last item cost that was taken from the queue
   bool over_error_ = false;
   std::vector<std::uint32_t> ring_;  // scratch
 };
@@ -167,33 +174,55 @@ void Engine::find_living(std::uint32_t component) {
   }
 }
 
-/// The best place for an edge by what views lose there, at that price. Of half-edge collapses the cheaper.
-Candidate Engine::best_view_place(std::uint32_t e, const Quadric& q, ViewMetric::Memory& memory) const {
-  std::array<Candidate, 3> places{cost_.best_place(e, q)};
-  std::size_t count = std::isfinite(places[0].cost) ? 1 : 0;
-  if (options_.placement == Placement::half_edge) count = cost_.fallbacks(e, q, places.data());
-  Candidate best;
+/// Notes the best place for an edge by what views lose there, at that price or one beyond the limit. Of
+/// half-edge collapses the cheaper.
+void Engine::price_by_views(std::uint32_t e, const Quadric& q, double limit, ViewMetric::Memory& memory) {
   const auto [a, b] = mesh_.edges[e].ends;
+  PartialChange part = views_->noted_part(e);
+  if (options_.placement != Placement::half_edge) {
+    Candidate best = cost_.best_place(e, q);
+    if (std::isfinite(best.cost)) {
+      memory.merge.plan(e, a, b, best.position);
+      best.cost = views_->price_up_to(limit, e, best, memory.merge, *memory.scratch, part);
+    }
+    views_->note(e, best, part);
+    return;
+  }
+  std::array<Candidate, 3> places;
+  const std::size_t count = cost_.fallbacks(e, q, places.data());
+  Candidate best;
   for (std::size_t i = 0; i < count; ++i) {
     memory.merge.plan(e, a, b, places[i].position);
     const double price = views_->price(e, places[i], memory.merge, *memory.scratch);
     if (price < best.cost) best = {price, places[i].position};
   }
-  return best;
+  views_->note(e, best, views_->whole());
+}
+
+/// A memory that no other thread uses.
+ViewMetric::Memory Engine::take_memory() {
+  const std::lock_guard lock(memory_mutex_);
+  ViewMetric::Memory memory = std::move(memory_.back());
+  memory_.pop_back();
+  return memory;
+}
+
+void Engine::give_back(ViewMetric::Memory&& memory) {
+  const std::lock_guard lock(memory_mutex_);
+  memory_.push_back(std::move(memory));
 }
 
 /// Prices edges and puts them into the queue, in parallel.
-void Engine::price_by_views(std::span<const std::uint32_t> edges) {
-  std::vector<Candidate> places(edges.size());
-  const std::size_t grain = (edges.size() + memory_.size() - 1) / memory_.size();
-  parallel_for(context_, edges.size(), grain, [&](std::size_t begin, std::size_t end) {
-    ViewMetric::Memory& memory = memory_[begin / grain];
-    for (std::size_t i = begin; i < end; ++i)
-      places[i] = best_view_place(edges[i], cost_.quadric(edges[i]), memory);
+void Engine::price_by_views(std::span<const Due> edges) {
+  parallel_for(context_, edges.size(), 1, [&](std::size_t i, std::size_t) {
+    const std::uint32_t e = edges[i].item;
+    ViewMetric::Memory memory = take_memory();
+    price_by_views(e, cost_.quadric(e), kEnough * std::max(edges[i].cost, level_), memory);
+    give_back(std::move(memory));
   });
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    views_->note(edges[i], places[i]);
-    if (std::isfinite(places[i].cost)) queue_.set(edges[i], places[i].cost);
+  for (const Due& due : edges) {
+    const double price = views_->noted(due.item).cost;
+    if (std::isfinite(price)) queue_.set(due.item, price);
   }
 }
 
@@ -280,12 +309,13 @@ void Engine::take_by_views() {
     if (item == kInvalid) return;
     if (item >= edge_count_ || views_->is_fresh(item)) {
       batch_.push_back({item, queue_.cost_floor(item), {}, {}});
+      level_ = batch_.back().cost;
       queue_.remove(item);
       return;
     }
     // What is priced for the first time will be needed; new prices can go out of date before they are.
     const std::size_t most = views_->is_noted(item) ? kTogether : kAhead;
-    std::vector<std::uint32_t> stale;
+    std::vector<Due> stale;
     std::vector<std::pair<std::uint32_t, double>> others;
     for (std::size_t i = 0; i < kAhead && stale.size() < most; ++i) {
       const std::uint32_t next = queue_.first();
@@ -293,7 +323,7 @@ void Engine::take_by_views() {
       if (next >= edge_count_ || views_->is_fresh(next)) {
         others.emplace_back(next, queue_.cost_floor(next));
       } else {
-        stale.push_back(next);
+        stale.push_back({next, queue_.cost_floor(next), {}, {}});
       }
       queue_.remove(next);
     }
@@ -308,7 +338,8 @@ void Engine::price(Due& due) {
     due.place = cost_.best_place(due.item, due.quadric);
     return;
   }
-  if (!views_->is_fresh(due.item)) views_->note(due.item, best_view_place(due.item, due.quadric, memory_[0]));
+  if (!views_->is_fresh(due.item))
+    price_by_views(due.item, due.quadric, std::numeric_limits<double>::infinity(), memory_[0]);
   due.place = views_->noted(due.item);
 }
 
@@ -454,7 +485,8 @@ void Engine::revive_edges(std::uint32_t b) {
     if (tries_[e] == 0) return;
     tries_[e] = 0;
     if (views_ != nullptr) {
-      price_by_views({&e, 1});
+      const Due due{e, 0, {}, {}};
+      price_by_views({&due, 1});
       return;
     }
     const double cost = cost_.best_place(e, cost_.quadric(e)).cost;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
 #include "fovea/render/fragment_lists.h"
 
@@ -74,7 +75,7 @@ FOVEA_WIDE void cut(const WideWords& __restrict alpha_of, std::uint32_t cutoff,
 
 FaceValues::FaceValues(const CollapseState& state, const ShownSurface& shown, const RenderScene& scene,
                        PixelContent content, int view_size, const ModelRegions* regions,
-                       std::span<const std::size_t> mesh_index)
+                       std::span<const std::size_t> mesh_index, const Context& context)
     : state_(state),
       shown_(shown),
       content_(content),
@@ -101,11 +102,11 @@ FaceValues::FaceValues(const CollapseState& state, const ShownSurface& shown, co
     look.v = {texture.xy, texture.yy};
     look.offset = {texture.x, texture.y};
   }
-  if (content == PixelContent::lit) make_lights(scene);
+  if (content == PixelContent::lit) make_lights(scene, context);
 }
 
 /// Materials shine by their mean: maps of metalness and roughness count as their average.
-void FaceValues::make_lights(const RenderScene& scene) {
+void FaceValues::make_lights(const RenderScene& scene, const Context& context) {
   constexpr float kSteps = 8;
   for (std::size_t m = 0; m < materials_.size(); ++m) {
     const SceneMaterial& material = scene.materials[m];
@@ -125,12 +126,14 @@ void FaceValues::make_lights(const RenderScene& scene) {
     if (known == finishes_.end()) known = finishes_.insert(known, finish);
     materials_[m].finish = static_cast<std::size_t>(known - finishes_.begin());
   }
-  for (std::size_t view = 0; view < shown_.view_count(); ++view) {
-    for (const Finish& finish : finishes_) {
-      lights_.emplace_back(static_cast<float>(finish.metallic) / kSteps,
-                           static_cast<float>(finish.roughness) / kSteps, Vec3f(shown_.view(view).back));
+  lights_.resize(shown_.view_count() * finishes_.size());
+  parallel_for(context, shown_.view_count(), 1, [&](std::size_t view, std::size_t) {
+    for (std::size_t i = 0; i < finishes_.size(); ++i) {
+      lights_[view * finishes_.size() + i] =
+          LightTable(static_cast<float>(finishes_[i].metallic) / kSteps,
+                     static_cast<float>(finishes_[i].roughness) / kSteps, Vec3f(shown_.view(view).back));
     }
-  }
+  });
 }
 
 /// The texture seen through a factor; materials share it.

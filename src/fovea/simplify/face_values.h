@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/base/context.h"
 #include "fovea/base/wide.h"
 #include "fovea/render/corner_planes.h"
 #include "fovea/render/display_texture.h"
@@ -53,10 +54,11 @@ struct PlannedCollapse {
 /// them. Refers to all that it was made of.
 class FaceValues {
  public:
-  /// `regions` is for content `region` alone; `mesh_index` are the meshes of the engine in the model.
+  /// `regions` is for content `region` alone, else null; `mesh_index` are the meshes of the engine in the
+  /// model.
   FaceValues(const CollapseState& state, const ShownSurface& shown, const RenderScene& scene,
-             PixelContent content, int view_size, const ModelRegions* regions = nullptr,
-             std::span<const std::size_t> mesh_index = {});
+             PixelContent content, int view_size, const ModelRegions* regions,
+             std::span<const std::size_t> mesh_index, const Context& context);
 
   /// What a pixel without any surface has.
   std::uint32_t background() const;
@@ -117,7 +119,7 @@ class FaceValues {
   void set_normals(FaceLook& look, const Showing& showing, std::uint32_t f,
                    const PlannedCollapse* planned) const;
   void set_region(FaceLook& look, std::uint32_t slot, std::uint32_t f, const PlannedCollapse* planned) const;
-  void make_lights(const RenderScene& scene);
+  void make_lights(const RenderScene& scene, const Context& context);
   int add_texture(const RenderScene& scene, const SceneTexture& texture, Rgba factor);
 
   const CollapseState& state_;

@@ -99,7 +99,7 @@ ViewCost::~ViewCost() = default;
 ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceValues& values,
                    ViewMeasure measure, int size, std::vector<std::vector<std::uint32_t>> originals,
                    const Context& context)
-    : state_(state), shown_(shown), values_(values), measure_(measure) {
+    : state_(state), shown_(shown), values_(values), measure_(measure), context_(context) {
   views_.assign(shown.view_count(), {FragmentLists(size, size, values.background()), {}});
   const std::size_t pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   if (measure == ViewMeasure::entropy) {
@@ -183,20 +183,30 @@ void ViewCost::take_out(std::size_t v, const Showing& showing, std::uint32_t f) 
                     });
 }
 
+/// Calls change(view, showing, face) for all of them, views in parallel if there is enough to do.
+template <class Change>
+void ViewCost::for_showings(std::span<const std::uint32_t> faces, Change&& change) {
+  constexpr double kMuch = 2000;  // fragments, which take some tens of nanoseconds each
+  const double depth = static_cast<double>(views_[0].lists.size()) / (state_.mesh.live_faces + 1.0);
+  const double fragments = depth * static_cast<double>(faces.size() * views_.size());
+  parallel_for(context_, views_.size(), fragments > kMuch ? 1 : views_.size(),
+               [&](std::size_t begin, std::size_t end) {
+                 for (std::size_t v = begin; v < end; ++v) {
+                   for (const std::uint32_t f : faces) {
+                     for (const Showing& showing : shown_.showings(state_.slot_of_face(f)))
+                       change(v, showing, f);
+                   }
+                 }
+               });
+}
+
 void ViewCost::put_in(std::span<const std::uint32_t> faces) {
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    for (const std::uint32_t f : faces) {
-      for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) put_in(v, showing, f);
-    }
-  }
+  for_showings(faces, [&](std::size_t v, const Showing& showing, std::uint32_t f) { put_in(v, showing, f); });
 }
 
 void ViewCost::take_out(std::span<const std::uint32_t> faces) {
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    for (const std::uint32_t f : faces) {
-      for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) take_out(v, showing, f);
-    }
-  }
+  for_showings(faces,
+               [&](std::size_t v, const Showing& showing, std::uint32_t f) { take_out(v, showing, f); });
 }
 
 /// Where p lies between a and b, 0 … 1.
@@ -216,10 +226,22 @@ void ViewCost::move(std::uint32_t a, std::uint32_t b, Vec3d p) {
 
 double ViewCost::change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge,
                         Scratch& scratch) const {
+  PartialChange all;
+  add_change(a, b, p, merge, std::numeric_limits<double>::infinity(), scratch, all);
+  return amount(all);
+}
+
+void ViewCost::add_change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, double limit,
+                          Scratch& scratch, PartialChange& part) const {
   const Vec3d rounded = in_single_precision(p);  // as the engine keeps it
   scratch.begin_collapse();
   gather(a, b, rounded, merge, scratch);
-  return change(scratch);
+  add_change(limit, scratch, part);
+}
+
+double ViewCost::amount(const PartialChange& part) const {
+  const auto sum = static_cast<double>(part.sum);
+  return measure_ == ViewMeasure::image ? sum : sum / (log_scale_ * static_cast<double>(n_log_n_.size() - 1));
 }
 
 double ViewCost::change_without(std::span<const std::uint32_t> faces, Scratch& scratch) const {
@@ -232,32 +254,33 @@ double ViewCost::change_without(std::span<const std::uint32_t> faces, Scratch& s
       scratch.add(local);
     }
   }
-  return change(scratch);
+  PartialChange all;
+  add_change(std::numeric_limits<double>::infinity(), scratch, all);
+  return amount(all);
 }
 
-/// The change by the faces that are gathered.
-double ViewCost::change(Scratch& scratch) const {
+/// Adds the change by the faces that are gathered, in the views that `part` lacks.
+void ViewCost::add_change(double limit, Scratch& scratch, PartialChange& part) const {
   // Of equally near ones the smaller number is in front: it comes first.
   std::sort(scratch.faces.begin(), scratch.faces.end(),
             [](const LocalFace& x, const LocalFace& y) { return x.shown < y.shown; });
   for (std::vector<Scratch::Seen>& seen : scratch.seen) {
     if (seen.size() < scratch.faces.size()) seen.resize(scratch.faces.size());
   }
-  std::int64_t sum = 0;
-  SampleRect next = look_at(0, scratch);
-  for (std::size_t v = 0; v < views_.size(); ++v) {
+  if (is_whole(part)) return;
+  SampleRect next = look_at(part.views, scratch);
+  do {
+    const std::size_t v = part.views++;
     const SampleRect box = next;
-    if (v + 1 < views_.size()) {  // most of the time would go into waiting for memory
-      next = look_at(v + 1, scratch);
-      fetch(v + 1, next);
+    if (!is_whole(part)) {  // most of the time would go into waiting for memory
+      next = look_at(part.views, scratch);
+      fetch(part.views, next);
     }
     if (box.width == 0) continue;
     scratch.begin_view(box);
     lay_over(v, scratch);
-    sum += measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
-  }
-  if (measure_ == ViewMeasure::image) return static_cast<double>(sum);
-  return static_cast<double>(sum) / (log_scale_ * static_cast<double>(n_log_n_.size() - 1));
+    part.sum += measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
+  } while (!is_whole(part) && amount(part) <= limit);
 }
 
 /// Notes the faces around the edge in all showings, as they are and as they would be.

@@ -31,6 +31,12 @@ inline std::int32_t squared_difference(PackedColor x, PackedColor y) {
   return r * r + g * g + b * b + coverage * coverage / 8;
 }
 
+/// A sum over views that may stop before the last.
+struct PartialChange {
+  std::int64_t sum = 0;     ///< In units of the measure, see ViewCost::amount.
+  std::uint32_t views = 0;  ///< Over the first of them.
+};
+
 /// What collapses change in a set of views, from lists of the fragments behind every pixel: only pixels that
 /// the triangles around an edge cover are looked at, and nothing is drawn again.
 ///
@@ -59,6 +65,14 @@ class ViewCost {
   /// Changes nothing but `scratch`: for many threads, each with one of its own. O(#views · (one-rings + their
   /// pixels)).
   double change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, Scratch& scratch) const;
+  /// The same, going on from `part` by one view or more until all have been looked at or it is more than
+  /// `limit`.
+  /// Nothing around the edge may have changed since `part` began.
+  void add_change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, double limit,
+                  Scratch& scratch, PartialChange& part) const;
+  /// What has been summed, in the units of `change`.
+  double amount(const PartialChange& part) const;
+  bool is_whole(const PartialChange& part) const { return part.views == views_.size(); }
 
   /// What it changes if some faces go, of one mesh.
   double change_without(std::span<const std::uint32_t> faces, Scratch& scratch) const;
@@ -86,6 +100,8 @@ class ViewCost {
   // Notes of pixels (image): what they showed at first, and how far what they show now is from that.
   static std::uint32_t original(const FrontPixel& pixel) { return pixel.notes[0]; }
   static std::int32_t error(const FrontPixel& pixel) { return static_cast<std::int32_t>(pixel.notes[1]); }
+  template <class Change>
+  void for_showings(std::span<const std::uint32_t> faces, Change&& change);
   void put_in(std::size_t view, const Showing& showing, std::uint32_t f);
   void take_out(std::size_t view, const Showing& showing, std::uint32_t f);
   void swap_value(ViewState& view, std::size_t pixel, const Fragment& before, const Fragment& after) const;
@@ -95,7 +111,7 @@ class ViewCost {
   struct LocalFace;
   LocalFace local_face(const Showing& showing, std::uint32_t f, const PlannedCollapse& planned,
                        const ScreenVertex* merged) const;
-  double change(Scratch& scratch) const;
+  void add_change(double limit, Scratch& scratch, PartialChange& part) const;
   SampleRect look_at(std::size_t view, Scratch& scratch) const;
   void fetch(std::size_t view, const SampleRect& box) const;
   void lay_over(std::size_t view, Scratch& scratch) const;
@@ -111,6 +127,7 @@ class ViewCost {
   ShownSurface& shown_;
   const FaceValues& values_;
   const ViewMeasure measure_;
+  const Context& context_;
   std::vector<ViewState> views_;
   std::vector<std::int64_t> n_log_n_;  // [#pixels + 1] n log₂ n, in units of 1 / log_scale_
   double log_scale_ = 1;

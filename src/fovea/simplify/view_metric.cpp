@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "fovea/base/error.h"
@@ -49,7 +50,8 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
   }
   if (content_ == PixelContent::region)
     regions_ = std::make_unique<ModelRegions>(model_regions(model, options.regions, context));
-  if (is_image()) take_pictures();
+  // Else `look` sees the original itself.
+  if (is_image() && stage.from < state.mesh.live_faces) take_pictures();
 }
 
 /// A few views at a time, as a model may have far more vertices now than when it is looked at.
@@ -68,8 +70,8 @@ void ViewMetric::take_pictures() {
 void ViewMetric::make_cost(std::span<const View> views, Pictures originals) {
   shown_ = std::make_unique<ShownSurface>(state_, model_, mesh_index_, scene_, pose_,
                                           std::vector<View>(views.begin(), views.end()), size_, context_);
-  values_ =
-      std::make_unique<FaceValues>(state_, *shown_, scene_, content_, size_, regions_.get(), mesh_index_);
+  values_ = std::make_unique<FaceValues>(state_, *shown_, scene_, content_, size_, regions_.get(),
+                                         mesh_index_, context_);
   cost_ = std::make_unique<ViewCost>(state_, *shown_, *values_,
                                      is_image() ? ViewMeasure::image : ViewMeasure::entropy, size_,
                                      std::move(originals), context_);
@@ -80,6 +82,7 @@ void ViewMetric::look(std::span<const VertexField* const> importance) {
   const auto count = static_cast<double>(views_.size());
   scale_ = is_image() ? 1 / (3.0 * 255 * 255 * count * size_ * size_) : 1 / count;
   place_.resize(state_.mesh.edges.size());
+  part_.resize(state_.mesh.edges.size());
   noted_.assign(state_.mesh.edges.size(), 0);
   changed_.assign(state_.mesh.vertices.size(), 1);
   for (std::size_t s = 0; s < importance.size(); ++s) {
@@ -98,16 +101,25 @@ ViewMetric::Memory ViewMetric::make_memory(CollapseState& state) const {
 
 double ViewMetric::price(std::uint32_t e, const Candidate& place, const ValueMerge& merge,
                          ViewCost::Scratch& scratch) const {
+  PartialChange part;
+  return price_up_to(std::numeric_limits<double>::infinity(), e, place, merge, scratch, part);
+}
+
+double ViewMetric::price_up_to(double limit, std::uint32_t e, const Candidate& place, const ValueMerge& merge,
+                               ViewCost::Scratch& scratch, PartialChange& part) const {
   const auto [a, b] = state_.mesh.edges[e].ends;
-  double change = std::max(cost_->change(a, b, place.position, merge, scratch), 0.0) * scale_;
+  const double tie = kTie * place.cost;
+  double scale = scale_;
   // Locked ends have an infinite importance, but do not move.
   if (!importance_.empty()) {
     const auto weight = [&](std::uint32_t v) {
       return state_.mesh.vertices[v].locked ? 1.0 : static_cast<double>(importance_[v]);
     };
-    change *= 0.5 * (weight(a) + weight(b));
+    scale *= 0.5 * (weight(a) + weight(b));
   }
-  return change + kTie * place.cost;
+  const double most = scale > 0 ? (limit - tie) / scale : std::numeric_limits<double>::infinity();
+  cost_->add_change(a, b, place.position, merge, most, scratch, part);
+  return std::max(cost_->amount(part), 0.0) * scale + tie;
 }
 
 double ViewMetric::price_of_loss(std::span<const std::uint32_t> faces, double cost,
@@ -115,12 +127,13 @@ double ViewMetric::price_of_loss(std::span<const std::uint32_t> faces, double co
   return std::max(cost_->change_without(faces, scratch), 0.0) * scale_ + kTie * cost;
 }
 
-void ViewMetric::note(std::uint32_t e, const Candidate& place) {
+void ViewMetric::note(std::uint32_t e, const Candidate& place, const PartialChange& part) {
   place_[e] = place;
+  part_[e] = part;
   noted_[e] = collapses_;
 }
 
-bool ViewMetric::is_fresh(std::uint32_t e) const {
+bool ViewMetric::is_current(std::uint32_t e) const {
   const auto [a, b] = state_.mesh.edges[e].ends;
   return noted_[e] >= std::max(changed_[a], changed_[b]);
 }

@@ -49,11 +49,20 @@ class ViewMetric {
   /// The price of losing faces whose quadric error is `cost`, without importance.
   double price_of_loss(std::span<const std::uint32_t> faces, double cost, ViewCost::Scratch& scratch) const;
 
-  /// Notes the best place of an edge as of now, at its price.
-  void note(std::uint32_t e, const Candidate& place);
-  /// Whether its price was noted and nothing has changed around it since.
-  bool is_fresh(std::uint32_t e) const;
+  /// The same, but from views only until it is more than `limit`: `part` goes on from what is noted if
+  /// nothing has changed since.
+  double price_up_to(double limit, std::uint32_t e, const Candidate& place, const ValueMerge& merge,
+                     ViewCost::Scratch& scratch, PartialChange& part) const;
+
+  /// Notes the best place of an edge as of now, at its price by `part` of the views.
+  void note(std::uint32_t e, const Candidate& place, const PartialChange& part);
+  /// What is noted, nothing if something has changed around the edge since.
+  PartialChange noted_part(std::uint32_t e) const { return is_current(e) ? part_[e] : PartialChange(); }
+  /// Whether its price by all views is noted and nothing has changed around it since.
+  bool is_fresh(std::uint32_t e) const { return is_current(e) && cost_->is_whole(part_[e]); }
   bool is_noted(std::uint32_t e) const { return noted_[e] > 0; }
+  /// Of a price by all views.
+  PartialChange whole() const { return {0, static_cast<std::uint32_t>(cost_->view_count())}; }
   const Candidate& noted(std::uint32_t e) const { return place_[e]; }
 
   /// To be called around a collapse, see ViewCost.
@@ -70,6 +79,7 @@ class ViewMetric {
   static constexpr double kTie = 10;
 
   using Pictures = std::vector<std::vector<std::uint32_t>>;  // [#views][#pixels]
+  bool is_current(std::uint32_t e) const;
   bool is_image() const { return content_ == PixelContent::color || content_ == PixelContent::lit; }
   void take_pictures();
   void make_cost(std::span<const View> views, Pictures originals);
@@ -92,6 +102,7 @@ class ViewMetric {
   double scale_ = 1;
   std::vector<float> importance_;       // [#V], empty if all are 1
   std::vector<Candidate> place_;        // [#E], as noted
+  std::vector<PartialChange> part_;     // [#E], that its price is of
   std::vector<std::uint32_t> noted_;    // [#E], collapses so far, then; 0: never
   std::vector<std::uint32_t> changed_;  // [#V], collapses so far at the last change around it
   std::uint32_t collapses_ = 1;         // and one
