@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "fovea/base/error.h"
+#include "fovea/base/random.h"
 #include "fovea/judge/compare.h"
 #include "fovea/saliency/agreement.h"
 #include "fovea/saliency/mesh_saliency.h"
@@ -227,6 +228,36 @@ Variant chosen_by(const std::string& name, Metric metric) {
           }};
 }
 
+/// What choosing alone gains, without any saliency: the best of nothing and eight fields of pure chance,
+/// chosen as `choose_saliency` chooses.
+Importance best_of_chance(const Model& model, const SimplifyOptions& options, Context& context) {
+  std::vector<Importance> fields(1);
+  std::vector<Model> results;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Random random(seed);
+    std::vector<VertexField> chance;
+    for (const Mesh& mesh : model.meshes) {
+      VertexField& field = chance.emplace_back(mesh.surface.positions.size());
+      for (float& x : field.values()) x = static_cast<float>(random.uniform());
+    }
+    fields.push_back(salient_importance(model, chance, {}, context));
+  }
+  for (const Importance& field : fields) results.push_back(simplify(model, options, field, context).model);
+  std::vector<const Model*> tests;
+  for (const Model& result : results) tests.push_back(&result);
+  CompareOptions judge;
+  judge.size = 192;
+  judge.views.set = ViewSet::icosahedron;
+  judge.distance_samples = 1;
+  const std::vector<Comparison> found = compare(model, tests, judge, context);
+  const auto flip = [](const Comparison& c) {
+    return c[JudgedPass::base_color].flip_foreground + c[JudgedPass::lit].flip_foreground;
+  };
+  const auto best = std::min_element(found.begin(), found.end(),
+                                     [&](const auto& a, const auto& b) { return flip(a) < flip(b); });
+  return fields[static_cast<std::size_t>(best - found.begin())];
+}
+
 /// By views only the gentle ways are tried: by quadrics the others lose everywhere.
 std::vector<Variant> variants(Metric metric) {
   std::vector<Variant> all{{"none", [](auto&&...) { return Importance(); }}};
@@ -246,6 +277,7 @@ std::vector<Variant> variants(Metric metric) {
   }
   all.push_back(chosen_by("auto | yang", metric));
   if (metric != Metric::quadric) all.push_back(chosen_by("auto, by quadrics | yang", Metric::quadric));
+  all.push_back({"chance, the best of nine | yang", best_of_chance});
   return all;
 }
 
