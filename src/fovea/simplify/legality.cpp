@@ -72,7 +72,7 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   std::size_t coincident = 0;
   for (std::size_t i = far_at_a_; i < far && common >= 2; ++i) {
     const auto [c, n, p] = far_[i];
-    if ((mesh.vertices[n].mark < at_both) | (mesh.vertices[p].mark < at_both)) continue;
+    if (std::min(mesh.vertices[n].mark, mesh.vertices[p].mark) < at_both) continue;
     for (std::size_t j = 0; j < far_at_a_; ++j) {
       const auto [d, x, y] = far_[j];
       coincident += (x == n && y == p) || (x == p && y == n);

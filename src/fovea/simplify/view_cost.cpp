@@ -187,7 +187,8 @@ void ViewCost::take_out(std::size_t v, const Showing& showing, std::uint32_t f) 
 template <class Change>
 void ViewCost::for_showings(std::span<const std::uint32_t> faces, Change&& change) {
   constexpr double kMuch = 2000;  // fragments, which take some tens of nanoseconds each
-  const double depth = static_cast<double>(views_[0].lists.size()) / (state_.mesh.live_faces + 1.0);
+  const double depth =
+      static_cast<double>(views_[0].lists.size()) / (static_cast<double>(state_.mesh.live_faces) + 1);
   const double fragments = depth * static_cast<double>(faces.size() * views_.size());
   parallel_for(context_, views_.size(), fragments > kMuch ? 1 : views_.size(),
                [&](std::size_t begin, std::size_t end) {
