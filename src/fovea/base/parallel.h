@@ -10,7 +10,8 @@ namespace fovea {
 /// Calls `body(begin, end)` on consecutive chunks of [0, count), in parallel on the threads of
 /// `context`. Chunks are `grain` long (the last may be shorter) whatever the number of threads, so
 /// a reduction that keeps one partial result per chunk (index begin / grain) and adds them in order
-/// gives the same bits on any machine. Exceptions of `body` are rethrown.
+/// gives the same bits on any machine. Exceptions of `body` are rethrown. Calls for as many threads share
+/// them, also if they come from several threads of the program.
 void parallel_for(const Context& context, std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 

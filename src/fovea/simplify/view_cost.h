@@ -66,8 +66,7 @@ class ViewCost {
   /// pixels)).
   double change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, Scratch& scratch) const;
   /// The same, going on from `part` by one view or more until all have been looked at or it is more than
-  /// `limit`.
-  /// Nothing around the edge may have changed since `part` began.
+  /// `limit`. Nothing around the edge may have changed since `part` began.
   void add_change(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, double limit,
                   Scratch& scratch, PartialChange& part) const;
   /// What has been summed, in the units of `change`.

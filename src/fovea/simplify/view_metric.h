@@ -44,15 +44,15 @@ class ViewMetric {
   double price(std::uint32_t e, const Candidate& place, const ValueMerge& merge,
                ViewCost::Scratch& scratch) const;
 
+  /// The same by no more views than until it is more than `limit`, going on from `part`, see
+  /// ViewCost::add_change.
+  double price_up_to(double limit, std::uint32_t e, const Candidate& place, const ValueMerge& merge,
+                     ViewCost::Scratch& scratch, PartialChange& part) const;
+
   /// The least that anything with this quadric error can cost.
   static double least_price(double cost) { return kTie * cost; }
   /// The price of losing faces whose quadric error is `cost`, without importance.
   double price_of_loss(std::span<const std::uint32_t> faces, double cost, ViewCost::Scratch& scratch) const;
-
-  /// The same, but from views only until it is more than `limit`: `part` goes on from what is noted if
-  /// nothing has changed since.
-  double price_up_to(double limit, std::uint32_t e, const Candidate& place, const ValueMerge& merge,
-                     ViewCost::Scratch& scratch, PartialChange& part) const;
 
   /// Notes the best place of an edge as of now, at its price by `part` of the views.
   void note(std::uint32_t e, const Candidate& place, const PartialChange& part);
