@@ -27,13 +27,7 @@ double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
 
-double cpu_seconds(const rusage& usage) { return seconds(usage.ru_utime) + seconds(usage.ru_stime); }
-
-double own_cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return cpu_seconds(usage);
-}
+double used_seconds(const rusage& usage) { return seconds(usage.ru_utime) + seconds(usage.ru_stime); }
 
 /// A line of /proc/self/status that counts in kB, in bytes.
 std::uint64_t status_bytes(const std::string& key) {
@@ -55,12 +49,12 @@ std::uint64_t restart_peak() {
 Cost work_here(const Preparation& prepare) {
   const Work work = prepare();
   const std::uint64_t before = restart_peak();
-  const double cpu_before = own_cpu_seconds();
+  const double cpu_before = cpu_seconds();
   const Clock::time_point start = Clock::now();
   Cost cost;
   cost.result = work();
   cost.wall_seconds = seconds_since(start);
-  cost.cpu_seconds = own_cpu_seconds() - cpu_before;
+  cost.cpu_seconds = cpu_seconds() - cpu_before;
   const std::uint64_t peak = status_bytes("VmHWM");
   cost.peak_bytes = peak > before ? peak - before : 0;
   return cost;
@@ -114,7 +108,7 @@ Cost run_once(const std::vector<std::string>& words, const std::vector<int>& acc
   if (code != 0 && std::find(accepted.begin(), accepted.end(), code) == accepted.end()) {
     throw Error(ErrorKind::input, fmt::format("{} failed with exit code {}", words[0], code));
   }
-  return {seconds_since(start), cpu_seconds(usage), static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, 0};
+  return {seconds_since(start), used_seconds(usage), static_cast<std::uint64_t>(usage.ru_maxrss) * 1024, 0};
 }
 
 Cost best(const std::function<Cost()>& run, int repeats) {
@@ -129,6 +123,12 @@ Cost best(const std::function<Cost()>& run, int repeats) {
 }
 
 }  // namespace
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return used_seconds(usage);
+}
 
 Cost measure(const Preparation& prepare, int repeats) {
   return best([&] { return measure_once(prepare); }, repeats);

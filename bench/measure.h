@@ -15,6 +15,9 @@ struct Cost {
   std::uint64_t result = 0;      ///< What the work returned.
 };
 
+/// User and system time that this process has used so far, over all threads.
+double cpu_seconds();
+
 /// Work in two steps: the outer call prepares (not measured) and returns what is measured. That
 /// returns a number that says what came out.
 using Work = std::function<std::uint64_t()>;

@@ -243,19 +243,9 @@ Importance best_of_chance(const Model& model, const SimplifyOptions& options, Co
     fields.push_back(salient_importance(model, chance, {}, context));
   }
   for (const Importance& field : fields) results.push_back(simplify(model, options, field, context).model);
-  std::vector<const Model*> tests;
-  for (const Model& result : results) tests.push_back(&result);
-  CompareOptions judge;
-  judge.size = 192;
-  judge.views.set = ViewSet::icosahedron;
-  judge.distance_samples = 1;
-  const std::vector<Comparison> found = compare(model, tests, judge, context);
-  const auto flip = [](const Comparison& c) {
-    return c[JudgedPass::base_color].flip_foreground + c[JudgedPass::lit].flip_foreground;
-  };
-  const auto best = std::min_element(found.begin(), found.end(),
-                                     [&](const auto& a, const auto& b) { return flip(a) < flip(b); });
-  return fields[static_cast<std::size_t>(best - found.begin())];
+  const std::vector<double> flips = small_picture_flips(model, results, context);
+  const auto best = std::min_element(flips.begin(), flips.end());
+  return fields[static_cast<std::size_t>(best - flips.begin())];
 }
 
 /// By views only the gentle ways are tried: by quadrics the others lose everywhere.
@@ -396,6 +386,8 @@ int run(int count, char** words) {
         task.only.emplace_back(words[i]);
       }
     }
+    if (task.metric != Metric::quadric && !task.quality)
+      throw Error(ErrorKind::usage, "--default-metric needs --quality");
     if (task.quality) {
       print_quality(chosen(textured_subjects(), task), task.metric);
     } else if (task.distances) {

@@ -13,8 +13,6 @@ namespace fovea {
 
 namespace {
 
-constexpr std::int64_t kSize = 192;
-
 /// The maps that trials are mixed from, on the scene.
 class Mixer {
  public:
@@ -134,16 +132,9 @@ class Trials {
       trial.name = name_of(trial);
       models.push_back(simplify(model_, options_, importance_of(trial), context_).model);
     }
-    std::vector<const Model*> tests;
-    for (const Model& model : models) tests.push_back(&model);
-    CompareOptions compare_options;
-    compare_options.size = kSize;
-    compare_options.views.set = ViewSet::icosahedron;
-    compare_options.distance_samples = 1;
-    const std::vector<Comparison> found = compare(model_, tests, compare_options, context_);
+    const std::vector<double> flips = small_picture_flips(model_, models, context_);
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      trials[i].flip =
-          (found[i][JudgedPass::base_color].flip_foreground + found[i][JudgedPass::lit].flip_foreground) / 2;
+      trials[i].flip = flips[i];
       result_.trials.push_back(trials[i]);
       if (trials[i].flip < result_.trials[result_.best].flip) result_.best = result_.trials.size() - 1;
     }
@@ -158,6 +149,22 @@ class Trials {
 };
 
 }  // namespace
+
+std::vector<double> small_picture_flips(const Model& original, std::span<const Model> tests,
+                                        Context& context) {
+  std::vector<const Model*> pointers;
+  for (const Model& model : tests) pointers.push_back(&model);
+  CompareOptions options;
+  options.size = 192;
+  options.views.set = ViewSet::icosahedron;
+  options.distance_samples = 1;
+  std::vector<double> flips;
+  for (const Comparison& found : compare(original, pointers, options, context)) {
+    flips.push_back((found[JudgedPass::base_color].flip_foreground + found[JudgedPass::lit].flip_foreground) /
+                    2);
+  }
+  return flips;
+}
 
 AutoSaliency choose_saliency(const Model& model, const SimplifyOptions& options, const Importance& importance,
                              const SaliencyOptions& saliency, Context& context) {
