@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace fovea {
+namespace fovea::sample {
 namespace {
 
 double distance(Vec2d a, Vec2d b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -50,4 +50,4 @@ TEST(Curve, LengthOfACirclesPoints) {
 TEST(Curve, OnePointIsAPlace) { EXPECT_EQ(Curve({{3, 4}}).at(0), (Vec2d{3, 4})); }
 
 }  // namespace
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fovea {
+namespace fovea::sample {
 namespace {
 
 template <class F>
@@ -85,4 +85,4 @@ TEST(HeightMap, MountainsAreSeededAndBounded) {
 }
 
 }  // namespace
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -7,7 +7,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
+namespace fovea::sample {
 namespace {
 
 Vec3d random_point(Random& random) {
@@ -75,4 +75,4 @@ TEST(CellNoise, NearestBeforeSecondAndBounded) {
 }
 
 }  // namespace
-}  // namespace fovea
+}  // namespace fovea::sample

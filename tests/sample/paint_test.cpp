@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace fovea {
+namespace fovea::sample {
 namespace {
 
 TEST(Paint, ColoursByTexelCentreWithTUpwards) {
@@ -76,4 +76,4 @@ TEST(SmoothStep, RisesAndFalls) {
 }
 
 }  // namespace
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -7,7 +7,7 @@
 
 #include "support/meshes.h"
 
-namespace fovea {
+namespace fovea::sample {
 namespace {
 
 /// Cone with its tip at row `rows`: the last row is one point.
@@ -63,4 +63,4 @@ TEST(Sheet, ScaledGrowsWithTheRootAndHasAFloor) {
 }
 
 }  // namespace
-}  // namespace fovea
+}  // namespace fovea::sample

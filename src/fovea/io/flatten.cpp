@@ -33,16 +33,16 @@ std::uint64_t count_raw_parts(const Model& model) {
 
 }  // namespace
 
-Vec3f Placement::position(Vec3f p) const { return Vec3f(transform_point(transform, Vec3d(p))); }
+Vec3f PlacedMesh::position(Vec3f p) const { return Vec3f(transform_point(transform, Vec3d(p))); }
 
-Vec3f Placement::normal(Vec3f n) const {
+Vec3f PlacedMesh::normal(Vec3f n) const {
   const Vec3d turned = cofactors_times(transform, Vec3d(n)) * (mirrored ? -1.0 : 1.0);
   const double l = length(turned);
   return l > 0 && std::isfinite(l) ? Vec3f(turned / l) : Vec3f{0, 0, 1};
 }
 
-std::vector<Placement> placements(const Model& model) {
-  std::vector<Placement> result;
+std::vector<PlacedMesh> placed_meshes(const Model& model) {
+  std::vector<PlacedMesh> result;
   const auto instances = mesh_instances(model);
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     if (model.meshes[m].surface.face_count() == 0) continue;
@@ -66,11 +66,11 @@ UvSource uv_source(const Model& model, int material) {
   return base ? UvSource{base->uv_set, base->transform} : UvSource{};
 }
 
-std::vector<int> used_materials(const Model& model, const std::vector<Placement>& shown) {
+std::vector<int> used_materials(const Model& model, const std::vector<PlacedMesh>& shown) {
   std::vector<bool> seen(model.materials.size(), false);
   std::vector<int> result;
-  for (const Placement& placement : shown) {
-    const TriMesh& mesh = model.meshes[placement.mesh].surface;
+  for (const PlacedMesh& placed : shown) {
+    const TriMesh& mesh = model.meshes[placed.mesh].surface;
     for (const std::uint32_t part : mesh.face_part) {
       const int material = mesh.parts[part].material;
       if (material < 0 || seen[static_cast<std::size_t>(material)]) continue;

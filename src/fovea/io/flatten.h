@@ -14,8 +14,8 @@
 
 namespace fovea {
 
-/// One showing of a mesh, and how it turns the mesh's numbers into the scene's.
-struct Placement {
+/// A mesh as an instance shows it, and how that turns the mesh's numbers into the scene's.
+struct PlacedMesh {
   std::size_t mesh = 0;
   Mat4 transform;
   bool mirrored = false;  ///< Winding must be turned.
@@ -26,7 +26,7 @@ struct Placement {
 };
 
 /// Every instance of every mesh, mesh by mesh.
-std::vector<Placement> placements(const Model& model);
+std::vector<PlacedMesh> placed_meshes(const Model& model);
 
 /// Which texture coordinates a material's base colour reads.
 struct UvSource {
@@ -40,7 +40,7 @@ struct UvSource {
 UvSource uv_source(const Model& model, int material);
 
 /// Indices of the materials that triangles of shown meshes use, in order of first use; -1 left out.
-std::vector<int> used_materials(const Model& model, const std::vector<Placement>& shown);
+std::vector<int> used_materials(const Model& model, const std::vector<PlacedMesh>& shown);
 
 /// Index of a texture's image, or -1.
 int image_of(const Model& model, const std::optional<TextureRef>& ref);

@@ -36,11 +36,11 @@ class ObjWriter {
     std::size_t first = 0;
   };
 
-  void write_mesh(const Placement& placement);
-  void write_positions(const TriMesh& mesh, const Placement& placement);
-  void write_normals(const AttributeLayer& layer, const Placement& placement);
+  void write_mesh(const PlacedMesh& placed);
+  void write_positions(const TriMesh& mesh, const PlacedMesh& placed);
+  void write_normals(const AttributeLayer& layer, const PlacedMesh& placed);
   const std::vector<UvTable>& uv_tables(std::size_t mesh_index);
-  void write_faces(const TriMesh& mesh, const Placement& placement);
+  void write_faces(const TriMesh& mesh, const PlacedMesh& placed);
   void write_face(const TriMesh& mesh, std::size_t face, const UvTable* table, bool mirrored);
   void use_material(int material);
   void line(std::string_view key, std::initializer_list<float> numbers) {
@@ -63,7 +63,7 @@ class ObjWriter {
 };
 
 std::vector<OutputFile> ObjWriter::run() {
-  const std::vector<Placement> shown = placements(model_);
+  const std::vector<PlacedMesh> shown = placed_meshes(model_);
   const std::vector<int> materials = used_materials(model_, shown);
   const std::vector<std::string> names = material_names(model_, materials);
   for (std::size_t i = 0; i < materials.size(); ++i) name_of_material_[materials[i]] = names[i];
@@ -73,30 +73,30 @@ std::vector<OutputFile> ObjWriter::run() {
     files.push_back({stem_ + ".mtl", write_mtl(model_, materials, names, stem_, files)});
     out_.put("mtllib " + stem_ + ".mtl\n");
   }
-  for (const Placement& placement : shown) write_mesh(placement);
+  for (const PlacedMesh& placed : shown) write_mesh(placed);
   files[0].bytes = std::move(out_.bytes);
   return files;
 }
 
-void ObjWriter::write_mesh(const Placement& placement) {
-  const Mesh& mesh = model_.meshes[placement.mesh];
-  std::string name = mesh.name.empty() ? fmt::format("mesh_{}", placement.mesh) : mesh.name;
+void ObjWriter::write_mesh(const PlacedMesh& placed) {
+  const Mesh& mesh = model_.meshes[placed.mesh];
+  std::string name = mesh.name.empty() ? fmt::format("mesh_{}", placed.mesh) : mesh.name;
   std::replace_if(
       name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) <= ' ' || c == '\\'; },
       '_');
   out_.put("o " + name + "\n");
-  write_positions(mesh.surface, placement);
-  uv_tables(placement.mesh);
-  if (const AttributeLayer* normals = mesh.surface.find(Semantic::normal)) write_normals(*normals, placement);
-  write_faces(mesh.surface, placement);
+  write_positions(mesh.surface, placed);
+  uv_tables(placed.mesh);
+  if (const AttributeLayer* normals = mesh.surface.find(Semantic::normal)) write_normals(*normals, placed);
+  write_faces(mesh.surface, placed);
 }
 
-void ObjWriter::write_positions(const TriMesh& mesh, const Placement& placement) {
+void ObjWriter::write_positions(const TriMesh& mesh, const PlacedMesh& placed) {
   first_position_ = positions_;
   const AttributeLayer* colors = mesh.find(Semantic::color);
   const auto color = colors ? value_of_vertex(mesh, *colors) : std::vector<const float*>();
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const Vec3f p = placement.position(mesh.positions[v]);
+    const Vec3f p = placed.position(mesh.positions[v]);
     if (colors) {
       static constexpr float kWhite[3] = {1, 1, 1};
       const float* c = color[v] ? color[v] : kWhite;
@@ -129,18 +129,18 @@ const std::vector<ObjWriter::UvTable>& ObjWriter::uv_tables(std::size_t mesh_ind
   return tables;
 }
 
-void ObjWriter::write_normals(const AttributeLayer& layer, const Placement& placement) {
+void ObjWriter::write_normals(const AttributeLayer& layer, const PlacedMesh& placed) {
   first_normal_ = normals_;
   for (std::size_t i = 0; i < layer.size(); ++i) {
     const float* n = layer.value(ValueId{i});
-    const Vec3f turned = placement.normal({n[0], n[1], n[2]});
+    const Vec3f turned = placed.normal({n[0], n[1], n[2]});
     line("vn", {turned.x, turned.y, turned.z});
   }
   normals_ += layer.size();
 }
 
-void ObjWriter::write_faces(const TriMesh& mesh, const Placement& placement) {
-  const std::vector<UvTable>& tables = uv_tables(placement.mesh);
+void ObjWriter::write_faces(const TriMesh& mesh, const PlacedMesh& placed) {
+  const std::vector<UvTable>& tables = uv_tables(placed.mesh);
   std::vector<std::vector<std::size_t>> faces(mesh.parts.size());
   for (std::size_t f = 0; f < mesh.face_count(); ++f) faces[mesh.face_part[f]].push_back(f);
   for (std::size_t p = 0; p < mesh.parts.size(); ++p) {
@@ -150,7 +150,7 @@ void ObjWriter::write_faces(const TriMesh& mesh, const Placement& placement) {
     const auto table =
         std::find_if(tables.begin(), tables.end(), [&](const UvTable& t) { return t.source == source; });
     for (const std::size_t f : faces[p]) {
-      write_face(mesh, f, table == tables.end() ? nullptr : &*table, placement.mirrored);
+      write_face(mesh, f, table == tables.end() ? nullptr : &*table, placed.mirrored);
     }
   }
 }

@@ -40,11 +40,11 @@ bool is_plain_name(const std::string& name) {
          std::all_of(bare.begin(), bare.end(), [](unsigned char c) { return std::isgraph(c); });
 }
 
-Columns columns_of(const Model& model, const std::vector<Placement>& shown) {
+Columns columns_of(const Model& model, const std::vector<PlacedMesh>& shown) {
   Columns columns;
   std::set<std::string> custom;
-  for (const Placement& placement : shown) {
-    for (const AttributeLayer& layer : model.meshes[placement.mesh].surface.layers) {
+  for (const PlacedMesh& placed : shown) {
+    for (const AttributeLayer& layer : model.meshes[placed.mesh].surface.layers) {
       columns.normals = columns.normals || layer.semantic == Semantic::normal;
       columns.uvs = columns.uvs || layer.semantic == Semantic::uv;
       if (layer.semantic == Semantic::color && layer.set == 0) {
@@ -65,7 +65,7 @@ std::uint8_t to_byte(float x) {
 class PlyWriter {
  public:
   explicit PlyWriter(const Model& model)
-      : model_(model), shown_(placements(model)), columns_(columns_of(model, shown_)) {}
+      : model_(model), shown_(placed_meshes(model)), columns_(columns_of(model, shown_)) {}
 
   std::vector<OutputFile> run(const std::string& stem) {
     std::vector<OutputFile> files(1);
@@ -84,20 +84,20 @@ class PlyWriter {
  private:
   void add_vertices_and_faces() {
     std::map<std::size_t, std::vector<SplitPart>> parts_of_mesh;
-    for (const Placement& placement : shown_) {
-      const auto [known, is_new] = parts_of_mesh.try_emplace(placement.mesh);
-      if (is_new) known->second = split(model_.meshes[placement.mesh].surface);
-      for (const SplitPart& part : known->second) add_part(part, placement);
+    for (const PlacedMesh& placed : shown_) {
+      const auto [known, is_new] = parts_of_mesh.try_emplace(placed.mesh);
+      if (is_new) known->second = split(model_.meshes[placed.mesh].surface);
+      for (const SplitPart& part : known->second) add_part(part, placed);
     }
     if (vertex_count_ > 0xFFFFFFFEu)
       throw Error(ErrorKind::unsupported, "PLY indices have 32 bits: too many vertices");
   }
 
-  void add_part(const SplitPart& part, const Placement& placement) {
-    for (std::size_t v = 0; v < part.positions.size(); ++v) add_vertex(part, placement, v);
+  void add_part(const SplitPart& part, const PlacedMesh& placed) {
+    for (std::size_t v = 0; v < part.positions.size(); ++v) add_vertex(part, placed, v);
     for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
       faces_.put_little_endian(std::uint8_t{3});
-      const std::size_t second = placement.mirrored ? 2 : 1;
+      const std::size_t second = placed.mirrored ? 2 : 1;
       for (const std::size_t k : {std::size_t{0}, second, 3 - second}) {
         faces_.put_little_endian(static_cast<std::uint32_t>(vertex_count_ + part.indices[i + k]));
       }
@@ -110,15 +110,15 @@ class PlyWriter {
     for (const float x : numbers) vertices_.put_little_endian(x);
   }
 
-  void add_vertex(const SplitPart& part, const Placement& placement, std::size_t v) {
-    const Vec3f p = placement.position(part.positions[v]);
+  void add_vertex(const SplitPart& part, const PlacedMesh& placed, std::size_t v) {
+    const Vec3f p = placed.position(part.positions[v]);
     put({p.x, p.y, p.z});
     const auto at = [&](const VertexArray* a) {
       return a->values.data() + v * static_cast<std::size_t>(a->width);
     };
     if (columns_.normals) {
       const VertexArray* a = find(part, Semantic::normal, 0);
-      const Vec3f n = a ? placement.normal({at(a)[0], at(a)[1], at(a)[2]}) : Vec3f{0, 0, 1};
+      const Vec3f n = a ? placed.normal({at(a)[0], at(a)[1], at(a)[2]}) : Vec3f{0, 0, 1};
       put({n.x, n.y, n.z});
     }
     if (columns_.uvs) {
@@ -175,7 +175,7 @@ class PlyWriter {
   }
 
   const Model& model_;
-  std::vector<Placement> shown_;
+  std::vector<PlacedMesh> shown_;
   Columns columns_;
   std::vector<int> images_;
   std::size_t vertex_count_ = 0, face_count_ = 0;

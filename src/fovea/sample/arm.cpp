@@ -9,7 +9,7 @@
 #include "fovea/sample/noise.h"
 #include "fovea/sample/sheet.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -227,4 +227,4 @@ Model make_arm(double detail, Context& context) {
   return model;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -5,7 +5,7 @@
 
 #include "fovea/sample/noise.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -138,4 +138,4 @@ Image8 paint_arm(const ArmAtlas& atlas, const ArmMeasure& measure, const Context
   return image;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

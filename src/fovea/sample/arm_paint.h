@@ -3,7 +3,7 @@
 #include "fovea/base/context.h"
 #include "fovea/sample/paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// Where the charts of the arm lie on its texture; s runs around, t towards the fingertips.
 struct ArmAtlas {
@@ -23,4 +23,4 @@ struct ArmMeasure {
 /// A striped knitted sleeve, and a hand and forearm with a tattoo.
 Image8 paint_arm(const ArmAtlas& atlas, const ArmMeasure& measure, const Context& context);
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -4,7 +4,7 @@
 
 #include "fovea/io/image_codec.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -78,4 +78,4 @@ Model empty_model(const std::string& scene) {
   return model;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -8,7 +8,7 @@
 #include "fovea/model/model.h"
 #include "fovea/model/weld.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// How a painted image is stored.
 enum class ImageFormat { png, jpeg };
@@ -40,4 +40,4 @@ Model make_arm(double detail, Context& context);
 Model make_spheres(double detail, Context& context);
 Model make_terrain(double detail, Context& context);
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::vector<Vec2d> Curve::even(double from, double to, int count) const {
   return result;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -4,7 +4,7 @@
 
 #include "fovea/base/math.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// A smooth curve through points of the plane (centripetal Catmull-Rom; Yuksel et al. 2011), which
 /// neither loops nor overshoots between near points.
@@ -24,4 +24,4 @@ class Curve {
   std::vector<Vec2d> points_;
 };
 
-}  // namespace fovea
+}  // namespace fovea::sample

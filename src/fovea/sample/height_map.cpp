@@ -9,7 +9,7 @@
 #include "fovea/sample/noise.h"
 #include "fovea/sample/paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -204,4 +204,4 @@ HeightMap cast_light(const HeightMap& map, double east, double north, double up)
   return light;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

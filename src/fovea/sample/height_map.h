@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fovea {
+namespace fovea::sample {
 
 /// Heights at the corners of a square grid, read between them; x and y from 0 to 1.
 class HeightMap {
@@ -40,4 +40,4 @@ HeightMap blur(const HeightMap& map, int radius);
 /// point to the sun (y grows to the south); heights count in widths of the map.
 HeightMap cast_light(const HeightMap& map, double east, double north, double up);
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -115,4 +115,4 @@ Cell cell_noise(Vec2d p, std::uint64_t seed) {
   return cell;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

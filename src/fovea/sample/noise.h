@@ -4,7 +4,7 @@
 
 #include "fovea/base/math.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// Gradient noise (Perlin 2002) with hashed gradients: smooth, 0 at whole coordinates, about [-1, 1],
 /// features of size 1. The same on every machine.
@@ -26,4 +26,4 @@ struct Cell {
 };
 Cell cell_noise(Vec2d p, std::uint64_t seed);
 
-}  // namespace fovea
+}  // namespace fovea::sample

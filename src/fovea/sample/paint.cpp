@@ -5,7 +5,7 @@
 
 #include "fovea/base/parallel.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -65,4 +65,4 @@ void add_line(Figure& figure, const std::vector<Knot>& knots) {
   }
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

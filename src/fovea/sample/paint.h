@@ -8,7 +8,7 @@
 #include "fovea/base/math.h"
 #include "fovea/model/image.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// Red, green, blue as they are stored, 0 … 1 (sRGB curve).
 using Color = Vec3d;
@@ -70,4 +70,4 @@ struct Knot {
 };
 void add_line(Figure& figure, const std::vector<Knot>& knots);
 
-}  // namespace fovea
+}  // namespace fovea::sample

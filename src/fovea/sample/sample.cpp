@@ -20,10 +20,11 @@ struct Entry {
 };
 
 constexpr std::array kEntries{
-    Entry{"vase", "A plain figure painted on a busy ground, on a vase with handles", make_vase},
-    Entry{"arm", "A skinned arm that bends at the elbow", make_arm},
-    Entry{"spheres", "Two near spheres, one of which a morph target deforms", make_spheres},
-    Entry{"terrain", "Mountains with a photo-like texture, cut out as a block of earth", make_terrain},
+    Entry{"vase", "A plain figure painted on a busy ground, on a vase with handles", sample::make_vase},
+    Entry{"arm", "A skinned arm that bends at the elbow", sample::make_arm},
+    Entry{"spheres", "Two near spheres, one of which a morph target deforms", sample::make_spheres},
+    Entry{"terrain", "Mountains with a photo-like texture, cut out as a block of earth",
+          sample::make_terrain},
 };
 
 // Below, the figures fall apart; above, indices come near their limit of 32 bits.

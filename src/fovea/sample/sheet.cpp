@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -111,4 +111,4 @@ int scaled(int base, double detail) {
   return std::max(4, static_cast<int>(std::lround(base * std::sqrt(detail))));
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -5,7 +5,7 @@
 #include "fovea/base/math.h"
 #include "fovea/model/weld.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// A patch of surface in columns × rows quads. Points are asked for by whole numbers, so that patches
 /// which meet can give the same bits there. Columns cross rows counter-clockwise seen from outside.
@@ -36,4 +36,4 @@ VertexArray* find_attribute(SplitPart& part, Semantic semantic);
 /// Columns or rows at a level of detail: `base` at 1, so that triangles grow with `detail`.
 int scaled(int base, double detail);
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -6,7 +6,7 @@
 #include "fovea/sample/sheet.h"
 #include "fovea/sample/spheres_paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -98,4 +98,4 @@ Model make_spheres(double detail, Context& context) {
   return model;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

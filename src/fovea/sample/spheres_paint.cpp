@@ -6,7 +6,7 @@
 
 #include "fovea/sample/noise.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -104,4 +104,4 @@ Image8 paint_earth(const CubeAtlas& atlas, const Context& context) {
   return paint_cube(atlas, context, earth);
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

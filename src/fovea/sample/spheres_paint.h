@@ -3,7 +3,7 @@
 #include "fovea/base/context.h"
 #include "fovea/sample/paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// Six charts in three columns and two rows, one for each side of a cube blown up to a sphere.
 struct CubeAtlas {
@@ -25,4 +25,4 @@ Image8 paint_gas_giant(const CubeAtlas& atlas, const Context& context);
 /// A planet with seas, land, ice and clouds.
 Image8 paint_earth(const CubeAtlas& atlas, const Context& context);
 
-}  // namespace fovea
+}  // namespace fovea::sample

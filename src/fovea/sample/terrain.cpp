@@ -6,7 +6,7 @@
 #include "fovea/sample/sheet.h"
 #include "fovea/sample/terrain_paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -142,4 +142,4 @@ Model make_terrain(double detail, Context& context) {
   return model;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

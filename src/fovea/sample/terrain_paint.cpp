@@ -7,7 +7,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/sample/noise.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -213,4 +213,4 @@ Image8 paint_terrain(const Landscape& land, const TerrainAtlas& atlas, std::uint
   return image;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

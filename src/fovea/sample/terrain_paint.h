@@ -6,7 +6,7 @@
 #include "fovea/sample/height_map.h"
 #include "fovea/sample/paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// A landscape as the painter needs it, cut out of the earth as a block. Heights and levels in widths of
 /// the map.
@@ -33,4 +33,4 @@ struct TerrainAtlas {
 Image8 paint_terrain(const Landscape& land, const TerrainAtlas& atlas, std::uint64_t seed,
                      const Context& context);
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -6,7 +6,7 @@
 #include "fovea/sample/sheet.h"
 #include "fovea/sample/vase_paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -142,4 +142,4 @@ Model make_vase(double detail, Context& context) {
   return model;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

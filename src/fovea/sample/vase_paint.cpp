@@ -7,7 +7,7 @@
 
 #include "fovea/sample/noise.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 namespace {
 
@@ -210,4 +210,4 @@ Image8 paint_vase(const VaseAtlas& atlas, const VaseMeasure& measure, const Cont
   return image;
 }
 
-}  // namespace fovea
+}  // namespace fovea::sample

@@ -3,7 +3,7 @@
 #include "fovea/base/context.h"
 #include "fovea/sample/paint.h"
 
-namespace fovea {
+namespace fovea::sample {
 
 /// Where the charts of the vase lie on its texture.
 struct VaseAtlas {
@@ -24,4 +24,4 @@ struct VaseMeasure {
 /// A light horse without detail on a ground of blue waves full of it, between borders.
 Image8 paint_vase(const VaseAtlas& atlas, const VaseMeasure& measure, const Context& context);
 
-}  // namespace fovea
+}  // namespace fovea::sample

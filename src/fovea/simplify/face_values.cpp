@@ -157,7 +157,8 @@ std::size_t FaceValues::value_count() const {
   return content_ == PixelContent::region ? regions_->count() : shown_.face_count() + std::size_t{1};
 }
 
-FaceLook FaceValues::look(const Showing& showing, std::uint32_t f, const PlannedCollapse* planned) const {
+FaceLook FaceValues::look(const ShownInstance& showing, std::uint32_t f,
+                          const PlannedCollapse* planned) const {
   FaceLook look;
   look.material = shown_.material(f);
   look.number = shown_.shown_face(showing, f) + 1;
@@ -217,7 +218,7 @@ bool FaceValues::corner_values(int channel, std::uint32_t f, const PlannedCollap
 }
 
 /// Normals of the corners in the world; those of the face where it has none of its own.
-void FaceValues::set_normals(FaceLook& look, const Showing& showing, std::uint32_t f,
+void FaceValues::set_normals(FaceLook& look, const ShownInstance& showing, std::uint32_t f,
                              const PlannedCollapse* planned) const {
   look.is_lit = true;
   std::array<const Mat4*, 3> world;

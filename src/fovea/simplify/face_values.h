@@ -68,7 +68,8 @@ class FaceValues {
   bool has_holes(std::uint32_t f) const { return materials_[shown_.material(f)].cutoff > 0; }
 
   /// Face f as it is, or as a planned collapse leaves it.
-  FaceLook look(const Showing& showing, std::uint32_t f, const PlannedCollapse* planned = nullptr) const;
+  FaceLook look(const ShownInstance& showing, std::uint32_t f,
+                const PlannedCollapse* planned = nullptr) const;
 
   /// A pixel of a view.
   struct Pixel {
@@ -116,7 +117,7 @@ class FaceValues {
   };
   bool corner_values(int channel, std::uint32_t f, const PlannedCollapse* planned,
                      std::array<const float*, 3>& values) const;
-  void set_normals(FaceLook& look, const Showing& showing, std::uint32_t f,
+  void set_normals(FaceLook& look, const ShownInstance& showing, std::uint32_t f,
                    const PlannedCollapse* planned) const;
   void set_region(FaceLook& look, std::uint32_t slot, std::uint32_t f, const PlannedCollapse* planned) const;
   void make_lights(const RenderScene& scene, const Context& context);

@@ -30,12 +30,12 @@ ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
     first_showing_.push_back(static_cast<std::uint32_t>(showings_.size()));
     for (std::size_t i = 0; i < instances_shown.size(); ++i) {
       if (instances_shown[i].mesh != mesh_index[s]) continue;
-      Showing showing{s,
-                      static_cast<std::uint32_t>(vertices),
-                      static_cast<std::uint32_t>(faces),
-                      scene.meshes[i].surface.mirrored,
-                      instances_shown[i].world,
-                      {}};
+      ShownInstance showing{s,
+                            static_cast<std::uint32_t>(vertices),
+                            static_cast<std::uint32_t>(faces),
+                            scene.meshes[i].surface.mirrored,
+                            instances_shown[i].world,
+                            {}};
       const std::vector<Mat4> bent = vertex_transforms(model, pose, instances_shown[i]);
       for (std::size_t v = 0; v < bent.size(); ++v)
         showing.bent.push_back(bent[state.mesh_vertex[state.slots[s].first_vertex + v].index()]);
@@ -57,7 +57,7 @@ ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
   face_count_ = static_cast<std::uint32_t>(faces);
 
   screen_.resize(vertices * view_count());
-  for (const Showing& showing : showings_) {
+  for (const ShownInstance& showing : showings_) {
     const std::uint32_t first = state.slots[showing.slot].first_vertex;
     const std::size_t count = model.meshes[mesh_index[showing.slot]].surface.vertex_count();
     parallel_for(context, count, 1 << 10, [&](std::size_t begin, std::size_t end) {
@@ -70,12 +70,14 @@ ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
   }
 }
 
-Mat4 ShownSurface::to_world(const Showing& showing, std::uint32_t a, std::uint32_t b, double along) const {
+Mat4 ShownSurface::to_world(const ShownInstance& showing, std::uint32_t a, std::uint32_t b,
+                            double along) const {
   if (showing.bent.empty()) return showing.world;
   return mixed(to_world(showing, a), to_world(showing, b), along);
 }
 
-void ShownSurface::project(const Showing& showing, Vec3d p, const Mat4& world, ScreenVertex* out) const {
+void ShownSurface::project(const ShownInstance& showing, Vec3d p, const Mat4& world,
+                           ScreenVertex* out) const {
   const Vec3d at = transform_point(world, state_.slots[showing.slot].to_local_exact(p));
   for (std::size_t view = 0; view < view_count(); ++view) {
     const Projection& projection = projections_[view];
@@ -86,7 +88,7 @@ void ShownSurface::project(const Showing& showing, Vec3d p, const Mat4& world, S
 void ShownSurface::move(std::uint32_t v, std::uint32_t a, std::uint32_t b, Vec3d p, double along) {
   const std::uint32_t slot = state_.slot_of_vertex(v);
   for (std::size_t i = first_showing_[slot]; i < first_showing_[slot + 1]; ++i) {
-    Showing& showing = showings_[i];
+    ShownInstance& showing = showings_[i];
     const Mat4 world = to_world(showing, a, b, along);
     if (!showing.bent.empty()) showing.bent[v - state_.slots[slot].first_vertex] = world;
     project(showing, p, world, screen_.data() + row(showing, v) * view_count());

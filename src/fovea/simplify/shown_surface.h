@@ -16,8 +16,8 @@
 namespace fovea {
 
 /// A mesh of the engine as an instance shows it. Its vertices and faces are numbered through over all
-/// showings.
-struct Showing {
+/// shown instances.
+struct ShownInstance {
   std::uint32_t slot = 0;
   std::uint32_t first_vertex = 0, first_face = 0;  ///< Shown number of the slot's first.
   bool mirrored = false;
@@ -37,10 +37,10 @@ class ShownSurface {
   std::size_t view_count() const { return projections_.size(); }
   const View& view(std::size_t v) const { return projections_[v].view(); }
   /// How each slot is shown.
-  std::span<const Showing> showings(std::uint32_t slot) const {
+  std::span<const ShownInstance> showings(std::uint32_t slot) const {
     return {showings_.data() + first_showing_[slot], showings_.data() + first_showing_[slot + 1]};
   }
-  std::span<const Showing> showings() const { return showings_; }
+  std::span<const ShownInstance> showings() const { return showings_; }
   std::uint32_t face_count() const { return face_count_; }
   std::size_t bytes() const { return screen_.capacity() * sizeof(ScreenVertex); }
   /// Whether the back of a face is shown too.
@@ -48,21 +48,21 @@ class ShownSurface {
   std::uint32_t material(std::uint32_t f) const { return face_material_[f]; }
   /// Of its mesh.
   std::uint32_t part(std::uint32_t f) const { return face_part_[f]; }
-  std::uint32_t shown_face(const Showing& showing, std::uint32_t f) const {
+  std::uint32_t shown_face(const ShownInstance& showing, std::uint32_t f) const {
     return showing.first_face + f - state_.slots[showing.slot].first_face;
   }
 
   /// A vertex in all views.
-  const ScreenVertex* vertex(const Showing& showing, std::uint32_t v) const {
+  const ScreenVertex* vertex(const ShownInstance& showing, std::uint32_t v) const {
     return screen_.data() + row(showing, v) * view_count();
   }
   /// To world space around a vertex, or between two: `along` is 0 at a and 1 at b.
-  Mat4 to_world(const Showing& showing, std::uint32_t a, std::uint32_t b, double along) const;
-  const Mat4& to_world(const Showing& showing, std::uint32_t v) const {
+  Mat4 to_world(const ShownInstance& showing, std::uint32_t a, std::uint32_t b, double along) const;
+  const Mat4& to_world(const ShownInstance& showing, std::uint32_t v) const {
     return showing.bent.empty() ? showing.world : showing.bent[v - state_.slots[showing.slot].first_vertex];
   }
   /// A point of the engine in all views, [#views].
-  void project(const Showing& showing, Vec3d p, const Mat4& world, ScreenVertex* out) const;
+  void project(const ShownInstance& showing, Vec3d p, const Mat4& world, ScreenVertex* out) const;
   /// Vertex v moves to p, and bends as what lies between a and b does.
   void move(std::uint32_t v, std::uint32_t a, std::uint32_t b, Vec3d p, double along);
 
@@ -79,7 +79,7 @@ class ShownSurface {
   /// x of a vertex that a view cannot place: triangles at it are not seen.
   static constexpr std::int32_t kUnplaced = std::numeric_limits<std::int32_t>::min();
 
-  std::size_t row(const Showing& showing, std::uint32_t v) const {
+  std::size_t row(const ShownInstance& showing, std::uint32_t v) const {
     return showing.first_vertex + v - state_.slots[showing.slot].first_vertex;
   }
 
@@ -87,7 +87,7 @@ class ShownSurface {
   std::vector<SceneMaterial> materials_;
   std::vector<std::uint32_t> face_material_, face_part_;  // [#F of the engine]
   std::vector<Projection> projections_;                   // [#views]
-  std::vector<Showing> showings_;                         // by slot
+  std::vector<ShownInstance> showings_;                   // by slot
   std::vector<std::uint32_t> first_showing_;              // [#slots + 1]
   std::uint32_t face_count_ = 0;                          // shown
   std::vector<ScreenVertex> screen_;                      // [#shown vertices][#views]

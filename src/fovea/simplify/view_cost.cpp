@@ -31,7 +31,7 @@ double log2_of(double x) {
 
 /// A face around the edge, in one showing.
 struct ViewCost::LocalFace {
-  const Showing* showing = nullptr;
+  const ShownInstance* showing = nullptr;
   const PlannedCollapse* planned = nullptr;
   std::uint32_t face = 0, shown = 0;
   std::array<const ScreenVertex*, 3> before{}, after{};  // [#views]
@@ -118,7 +118,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
         view.count.assign(values.value_count(), 0);
         view.count[values.background()] = static_cast<std::uint32_t>(pixels);
       }
-      for (const Showing& showing : shown.showings()) {
+      for (const ShownInstance& showing : shown.showings()) {
         const std::uint32_t first = state.slots[showing.slot].first_face;
         const std::uint32_t last = first + state.face_count(showing.slot);
         for (std::uint32_t f = first; f < last; ++f) {
@@ -139,7 +139,7 @@ std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
   return std::make_shared<Scratch>(shown_.face_count());
 }
 
-std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const Showing& showing,
+std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const ShownInstance& showing,
                                               std::uint32_t f) const {
   std::array<ScreenVertex, 3> v;
   for (std::size_t k = 0; k < 3; ++k) v[k] = shown_.vertex(showing, state_.mesh.faces[f].vertex[k])[view];
@@ -159,7 +159,7 @@ void ViewCost::swap_value(ViewState& view, std::size_t pixel, const Fragment& be
   }
 }
 
-void ViewCost::put_in(std::size_t v, const Showing& showing, std::uint32_t f) {
+void ViewCost::put_in(std::size_t v, const ShownInstance& showing, std::uint32_t f) {
   const std::array<ScreenVertex, 3> at = corners(v, showing, f);
   if (!ShownSurface::is_seen(at, shown_.is_double_sided(f), showing.mirrored)) return;
   const FaceLook look = values_.look(showing, f);
@@ -173,7 +173,7 @@ void ViewCost::put_in(std::size_t v, const Showing& showing, std::uint32_t f) {
       });
 }
 
-void ViewCost::take_out(std::size_t v, const Showing& showing, std::uint32_t f) {
+void ViewCost::take_out(std::size_t v, const ShownInstance& showing, std::uint32_t f) {
   const std::array<ScreenVertex, 3> at = corners(v, showing, f);
   if (!ShownSurface::is_seen(at, shown_.is_double_sided(f), showing.mirrored)) return;
   ViewState& view = views_[v];
@@ -194,7 +194,7 @@ void ViewCost::for_showings(std::span<const std::uint32_t> faces, Change&& chang
                [&](std::size_t begin, std::size_t end) {
                  for (std::size_t v = begin; v < end; ++v) {
                    for (const std::uint32_t f : faces) {
-                     for (const Showing& showing : shown_.showings(state_.slot_of_face(f)))
+                     for (const ShownInstance& showing : shown_.showings(state_.slot_of_face(f)))
                        change(v, showing, f);
                    }
                  }
@@ -202,12 +202,13 @@ void ViewCost::for_showings(std::span<const std::uint32_t> faces, Change&& chang
 }
 
 void ViewCost::put_in(std::span<const std::uint32_t> faces) {
-  for_showings(faces, [&](std::size_t v, const Showing& showing, std::uint32_t f) { put_in(v, showing, f); });
+  for_showings(faces,
+               [&](std::size_t v, const ShownInstance& showing, std::uint32_t f) { put_in(v, showing, f); });
 }
 
 void ViewCost::take_out(std::span<const std::uint32_t> faces) {
-  for_showings(faces,
-               [&](std::size_t v, const Showing& showing, std::uint32_t f) { take_out(v, showing, f); });
+  for_showings(
+      faces, [&](std::size_t v, const ShownInstance& showing, std::uint32_t f) { take_out(v, showing, f); });
 }
 
 /// Where p lies between a and b, 0 … 1.
@@ -249,7 +250,7 @@ double ViewCost::change_without(std::span<const std::uint32_t> faces, Scratch& s
   scratch.begin_collapse();
   scratch.planned.assign(1, {});
   for (const std::uint32_t f : faces) {
-    for (const Showing& showing : shown_.showings(state_.slot_of_face(f))) {
+    for (const ShownInstance& showing : shown_.showings(state_.slot_of_face(f))) {
       LocalFace local = local_face(showing, f, scratch.planned[0], nullptr);
       local.goes = true;
       scratch.add(local);
@@ -289,10 +290,10 @@ void ViewCost::gather(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerg
                       Scratch& scratch) const {
   const auto [low, high] = std::minmax(a, b);
   const double t = along(low, high, p);
-  const std::span<const Showing> showings = shown_.showings(state_.slot_of_vertex(a));
+  const std::span<const ShownInstance> showings = shown_.showings(state_.slot_of_vertex(a));
   scratch.merged.resize(showings.size() * views_.size());
   scratch.planned.clear();
-  for (const Showing& showing : showings)
+  for (const ShownInstance& showing : showings)
     scratch.planned.push_back({a, b, p, &merge, shown_.to_world(showing, low, high, t)});
   for (std::size_t s = 0; s < showings.size(); ++s) {
     ScreenVertex* const merged = scratch.merged.data() + s * views_.size();
@@ -308,7 +309,7 @@ void ViewCost::gather(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerg
   }
 }
 
-ViewCost::LocalFace ViewCost::local_face(const Showing& showing, std::uint32_t f,
+ViewCost::LocalFace ViewCost::local_face(const ShownInstance& showing, std::uint32_t f,
                                          const PlannedCollapse& planned, const ScreenVertex* merged) const {
   LocalFace local;
   local.showing = &showing;

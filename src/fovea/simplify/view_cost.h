@@ -101,14 +101,14 @@ class ViewCost {
   static std::int32_t error(const FrontPixel& pixel) { return static_cast<std::int32_t>(pixel.notes[1]); }
   template <class Change>
   void for_showings(std::span<const std::uint32_t> faces, Change&& change);
-  void put_in(std::size_t view, const Showing& showing, std::uint32_t f);
-  void take_out(std::size_t view, const Showing& showing, std::uint32_t f);
+  void put_in(std::size_t view, const ShownInstance& showing, std::uint32_t f);
+  void take_out(std::size_t view, const ShownInstance& showing, std::uint32_t f);
   void swap_value(ViewState& view, std::size_t pixel, const Fragment& before, const Fragment& after) const;
-  std::array<ScreenVertex, 3> corners(std::size_t view, const Showing& showing, std::uint32_t f) const;
+  std::array<ScreenVertex, 3> corners(std::size_t view, const ShownInstance& showing, std::uint32_t f) const;
   double along(std::uint32_t a, std::uint32_t b, Vec3d p) const;
   void gather(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, Scratch& scratch) const;
   struct LocalFace;
-  LocalFace local_face(const Showing& showing, std::uint32_t f, const PlannedCollapse& planned,
+  LocalFace local_face(const ShownInstance& showing, std::uint32_t f, const PlannedCollapse& planned,
                        const ScreenVertex* merged) const;
   void add_change(double limit, Scratch& scratch, PartialChange& part) const;
   SampleRect look_at(std::size_t view, Scratch& scratch) const;
