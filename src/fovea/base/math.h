@@ -67,6 +67,10 @@ Vec3<T> normalized(Vec3<T> a) {
   const T l = length(a);
   return l > T(0) ? a / l : a;
 }
+template <class T>
+T triangle_area(Vec3<T> a, Vec3<T> b, Vec3<T> c) {
+  return length(cross(b - a, c - a)) / 2;
+}
 /// z of the cross product: twice the signed area of the triangle (0, a, b).
 template <class T>
 constexpr T cross(Vec2<T> a, Vec2<T> b) {
@@ -126,6 +130,12 @@ struct Box {
   Vec3d center() const { return empty() ? Vec3d{} : (low + high) * 0.5; }
   /// Length of the diagonal; 0 when empty.
   double diagonal() const { return empty() ? 0.0 : length(high - low); }
+};
+
+/// A ball around something.
+struct Sphere {
+  Vec3d center;
+  double radius = 0;
 };
 
 }  // namespace fovea

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include <set>
 
 #include "fovea/base/error.h"
+#include "fovea/base/text.h"
 #include "fovea/io/read.h"
 #include "fovea/io/text_scan.h"
 #include "fovea/io/write.h"
@@ -217,13 +217,6 @@ class SourceOrder {
   const Model& model_;
   std::size_t sources_ = 0, vertices_ = 0;
 };
-
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 bool is_npy_name(const std::filesystem::path& path) { return lower_extension(path) == ".npy"; }
 bool is_text_name(const std::filesystem::path& path) {

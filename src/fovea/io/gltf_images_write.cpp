@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "fovea/base/error.h"
+#include "fovea/base/text.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/io/uri.h"
 
@@ -25,17 +26,12 @@ constexpr ImageType kImageTypes[] = {
     {"image/png", ".png"},   {"image/jpeg", ".jpg"},  {"image/jpeg", ".jpeg"},     {"image/webp", ".webp"},
     {"image/ktx2", ".ktx2"}, {"image/avif", ".avif"}, {"image/vnd-ms.dds", ".dds"}};
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// Whether a file of that name may hold an image of that type. An unknown type may have any image's
 /// suffix, but no other: a model must not choose to write "Makefile".
 bool suffix_fits(const std::string& path, const std::string& mime_type) {
   constexpr std::string_view kOtherSuffixes[] = {".bmp",  ".gif", ".tga", ".tif",
                                                  ".tiff", ".hdr", ".exr", ".basis"};
-  const std::string suffix = lower(std::filesystem::path(path).extension().string());
+  const std::string suffix = lower_extension(path);
   bool is_known_type = false,
        is_image = std::ranges::find(kOtherSuffixes, suffix) != std::end(kOtherSuffixes);
   for (const ImageType& type : kImageTypes) {
@@ -81,7 +77,7 @@ class FileNames {
  public:
   FileNames(const std::vector<EncodedImage>& images, const std::string& stem) : images_(images) {
     for (const char* suffix : {".gltf", ".bin"}) {
-      image_of_.try_emplace(lower(stem + suffix), std::string(), images.size());
+      image_of_.try_emplace(lower_case(stem + suffix), std::string(), images.size());
     }
   }
 
@@ -91,7 +87,7 @@ class FileNames {
     std::string name = wanted;
     for (int n = 2;; ++n) {
       // File systems may not tell upper case from lower case.
-      const auto [at, is_new] = image_of_.try_emplace(lower(name), name, image);
+      const auto [at, is_new] = image_of_.try_emplace(lower_case(name), name, image);
       if (is_new) return {name, true};
       const auto& [taken, by] = at->second;
       if (by < images_.size() && images_[by].bytes == images_[image].bytes) return {taken, false};

@@ -1,11 +1,10 @@
 #include "fovea/io/image_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 #include <vector>
 
 #include "fovea/base/error.h"
+#include "fovea/base/text.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/io/write.h"
 
@@ -14,13 +13,6 @@ namespace fovea {
 namespace {
 
 constexpr int kJpegQuality = 92, kLossless = 101;
-
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 bool is_jpeg(const std::string& extension) { return extension == ".jpg" || extension == ".jpeg"; }
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <string_view>
 
 #include "fovea/base/error.h"
+#include "fovea/base/text.h"
 #include "fovea/io/assimp_read.h"
 #include "fovea/io/gltf_read.h"
 #include "fovea/io/obj_read.h"
@@ -26,13 +26,6 @@ constexpr std::size_t kLookedAt = 4096;
 
 std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 FileFormat format_of_extension(const fs::path& path) {

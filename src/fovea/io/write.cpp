@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
 #include <system_error>
 
 #include "fovea/base/error.h"
+#include "fovea/base/text.h"
 #include "fovea/io/gltf_write.h"
 #include "fovea/io/obj_write.h"
 #include "fovea/io/ply_write.h"
@@ -20,14 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 void check_extension(const fs::path& path) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   for (const char* known : {".glb", ".gltf", ".obj", ".ply"}) {
     if (extension == known) return;
   }
@@ -182,7 +176,7 @@ fs::path place_of(const fs::path& path, const OutputFile& file) {
 
 std::vector<OutputFile> encode_model(const Model& model, const fs::path& path, const WriteOptions& options,
                                      Context& context) {
-  const std::string extension = extension_of(path), stem = path.stem().string();
+  const std::string extension = lower_extension(path), stem = path.stem().string();
   if (extension == ".obj") return write_obj(model, stem, context);
   if (extension == ".ply") return write_ply(model, stem, context);
   return write_gltf(model, extension == ".glb", stem, options, context).files;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "fovea/base/error.h"
 #include "fovea/base/math.h"
@@ -12,7 +13,7 @@ namespace fovea {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 // Section 4 of the publication.
 constexpr double kColorExponent = 0.7, kColorKnee = 0.4, kColorTarget = 0.95, kFeatureExponent = 0.5,
                  kFeatureWidthDeg = 0.082;

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "fovea/render/float4.h"
+#include "fovea/base/float4.h"
 #include "fovea/render/screen_vertex.h"
 
 namespace fovea {

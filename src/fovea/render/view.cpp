@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace fovea {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 
 /// Numbers of a view are rounded to floats, so that the last bits of the C library's sines do not show.
 double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }

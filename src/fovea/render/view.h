@@ -25,12 +25,6 @@ struct View {
   }
 };
 
-/// A ball around what is to be seen.
-struct Sphere {
-  Vec3d center;
-  double radius = 0;
-};
-
 /// Directions to look from.
 enum class ViewSet {
   tetrahedron,          ///< The vertices of the solid: 4,

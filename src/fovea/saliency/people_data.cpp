@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "fovea/base/error.h"
+#include "fovea/base/text.h"
 #include "fovea/io/field_file.h"
 #include "fovea/io/read.h"
 #include "fovea/io/text_scan.h"
@@ -31,15 +31,8 @@ constexpr std::int64_t kMaxBytes = std::int64_t{8} << 30;
 constexpr std::string_view kModelExtensions[] = {".obj", ".off", ".ply", ".stl", ".glb", ".gltf"};
 constexpr std::string_view kMapExtensions[] = {".npy", ".txt", ".csv", ".val"};
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 bool has_extension(const fs::path& path, std::span<const std::string_view> extensions) {
-  return std::find(extensions.begin(), extensions.end(), lower(path.extension().string())) !=
-         extensions.end();
+  return std::find(extensions.begin(), extensions.end(), lower_extension(path)) != extensions.end();
 }
 
 /// The files of one name.
@@ -55,7 +48,7 @@ std::map<std::string, Namesakes> find_files(const fs::path& folder) {
     const fs::path& path = at->path();
     std::error_code ignored;
     if (!at->is_regular_file(ignored)) continue;
-    Namesakes& same = files[lower(path.stem().string())];
+    Namesakes& same = files[lower_case(path.stem().string())];
     if (has_extension(path, kModelExtensions)) same.models.push_back(path);
     if (has_extension(path, kMapExtensions)) same.maps.push_back(path);
   }
@@ -325,8 +318,8 @@ PeopleMap map_of_values(std::vector<float>&& values, const PeopleFiles& files, c
 // --- Faces of a surface -------------------------------------------------------------------------------
 
 float area_of(const Surface& surface, const std::array<std::uint32_t, 3>& t) {
-  const Vec3d p = surface.position(t[0]);
-  return static_cast<float>(length(cross(surface.position(t[1]) - p, surface.position(t[2]) - p)) / 2);
+  return static_cast<float>(
+      triangle_area(surface.position(t[0]), surface.position(t[1]), surface.position(t[2])));
 }
 
 float mean_of(const VertexField& field, const std::array<std::uint32_t, 3>& t) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "fovea/base/float4.h"
 #include "fovea/base/wide.h"
 
 namespace fovea {
@@ -98,7 +99,6 @@ class PointGrid {
 /// Four vertices, in whatever registers the machine has.
 using Double4 [[gnu::vector_size(32)]] = double;
 using Long4 [[gnu::vector_size(32)]] = std::int64_t;
-using Float4 [[gnu::vector_size(16)]] = float;
 
 /// Vertices in columns.
 struct Columns {
