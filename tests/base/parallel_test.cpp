@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "fovea/base/error.h"
+
 namespace fovea {
 namespace {
 
@@ -73,6 +75,34 @@ TEST(ParallelFor, RethrowsExceptions) {
                               }),
                  std::runtime_error);
   }
+}
+
+TEST(ParallelForOrThrow, EndsSoonAfterCancelling) {
+  for (const int threads : {1, 2}) {
+    Context context;
+    context.threads = threads;
+    std::atomic<int> calls = 0;
+    const auto run = [&] {
+      parallel_for_or_throw(context, 1000, 1, [&](std::size_t, std::size_t) {
+        ++calls;
+        context.cancel();
+      });
+    };
+    try {
+      run();
+      ADD_FAILURE() << "cancelled but not thrown";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+    }
+    EXPECT_LE(calls, threads);
+  }
+}
+
+TEST(ParallelForOrThrow, ElseIsAsParallelFor) {
+  Context context;
+  std::atomic<std::size_t> sum = 0;
+  parallel_for_or_throw(context, 10, 3, [&](std::size_t begin, std::size_t end) { sum += end - begin; });
+  EXPECT_EQ(sum, 10u);
 }
 
 }  // namespace

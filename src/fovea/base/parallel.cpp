@@ -8,6 +8,8 @@
 #include <map>
 #include <mutex>
 
+#include "fovea/base/error.h"
+
 namespace fovea {
 
 namespace {
@@ -37,6 +39,14 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain,
     return;
   }
   arena_of(threads).execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
+}
+
+void parallel_for_or_throw(const Context& context, std::size_t count, std::size_t grain,
+                           const std::function<void(std::size_t, std::size_t)>& body) {
+  parallel_for(context, count, grain, [&](std::size_t begin, std::size_t end) {
+    if (!context.cancelled()) body(begin, end);
+  });
+  if (context.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
 }
 
 }  // namespace fovea

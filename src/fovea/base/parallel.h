@@ -15,4 +15,9 @@ namespace fovea {
 void parallel_for(const Context& context, std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// As `parallel_for`, but begins no chunk once the context is cancelled and then throws Error(cancelled): for
+/// work without a usable partial result.
+void parallel_for_or_throw(const Context& context, std::size_t count, std::size_t grain,
+                           const std::function<void(std::size_t begin, std::size_t end)>& body);
+
 }  // namespace fovea

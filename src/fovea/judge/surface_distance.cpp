@@ -16,7 +16,7 @@ constexpr std::size_t kGrain = 1024;
 std::vector<double> distances(const std::vector<Vec3d>& points, const ClosestPoint& surface,
                               const Context& context) {
   std::vector<double> result(points.size());
-  parallel_for(context, points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for_or_throw(context, points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) result[i] = surface.nearest(points[i]).distance;
   });
   return result;
@@ -54,8 +54,7 @@ std::vector<Vec3d> sample_surface(const Surface& surface, std::int64_t count, st
   std::vector<double> area_before{0};
   const auto at = [&](std::uint32_t v) { return Vec3d(surface.positions[v]); };
   for (const auto& t : surface.triangles) {
-    const double area = 0.5 * length(cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0])));
-    area_before.push_back(area_before.back() + area);
+    area_before.push_back(area_before.back() + triangle_area(at(t[0]), at(t[1]), at(t[2])));
   }
   std::vector<Vec3d> points;
   if (!(area_before.back() > 0)) return points;

@@ -25,6 +25,7 @@ struct SurfaceDistance {
 /// Measures with `samples` points on each surface, spread by area (one in each of as many equal shares, the
 /// seed is the context's), and all its vertices for the maximum. Infinite if exactly one surface is empty, 0
 /// if both are. The same for any number of threads. About O(#samples log #F).
+/// Throws Error(cancelled).
 SurfaceDistance surface_distance(const Surface& reference, const Surface& test, std::int64_t samples,
                                  const Context& context);
 

@@ -37,7 +37,7 @@ void add_outlines(const RenderScene& scene, const View& view, int size, const Co
                   std::vector<Pixels>& pixels) {
   for (const SceneMesh& shown : scene.meshes) {
     const auto& triangles = shown.mesh->triangles;
-    parallel_for(context, triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for_or_throw(context, triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         std::array<Vec3d, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)

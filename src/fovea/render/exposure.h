@@ -17,7 +17,7 @@ namespace fovea {
 /// times all showings count. [#meshes of the model][#V]; meshes that are not shown have an empty field.
 ///
 /// From pictures of `size` pixels square, with one sample per pixel. Cost: that of the pictures and O(#V +
-/// #F) for each view.
+/// #F) for each view. Throws Error(cancelled).
 std::vector<VertexField> exposure(const RenderScene& scene, std::size_t mesh_count,
                                   std::span<const View> views, int size, const Context& context);
 

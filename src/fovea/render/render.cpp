@@ -357,7 +357,7 @@ std::vector<Picture> render_views(const RenderScene& scene, std::span<const View
                                   std::span<const VertexField> fields) {
   check(scene, options, fields);
   std::vector<Picture> pictures(views.size());
-  parallel_for(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for_or_throw(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) pictures[i] = render(scene, views[i], options, context, fields);
   });
   return pictures;

@@ -60,7 +60,7 @@ std::vector<Picture> render_passes(const RenderScene& scene, const View& view, s
                                    const RenderOptions& options, const Context& context,
                                    std::span<const VertexField> fields = {});
 
-/// One picture per view, views in parallel.
+/// One picture per view, views in parallel. Throws Error(cancelled).
 std::vector<Picture> render_views(const RenderScene& scene, std::span<const View> views,
                                   const RenderOptions& options, const Context& context,
                                   std::span<const VertexField> fields = {});

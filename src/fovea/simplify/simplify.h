@@ -123,7 +123,7 @@ struct SimplifyResult {
 ///
 /// Throws Error(usage) for options out of range, no target at all, or an importance field of the
 /// wrong size or with values that are NaN or negative. Not reaching a target is a result.
-/// Deterministic for any number of threads.
+/// Deterministic for any number of threads. Error(cancelled) comes from finding what is seen.
 SimplifyResult simplify(const Model& model, const SimplifyOptions& options, const Importance& importance,
                         Context& context);
 

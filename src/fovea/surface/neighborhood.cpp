@@ -325,7 +325,7 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
   if (count == 0 || fields.empty()) return results;
   const Samples samples(fields, counted);
   const auto run = [&](auto&& make_search) {
-    parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for_or_throw(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
       auto search = make_search();
       Averager averager(sigmas, cutoff, counted);
       for (std::size_t v = begin; v < end; ++v) {

@@ -46,6 +46,7 @@ struct Neighborhood {
 ///
 /// [#fields][#sigmas][#V]. Parallel; the same bits for any number of threads. Cost: but for `diffusion` what
 /// is within the largest radius of every vertex; by `diffusion` some dozens of products with a sparse matrix.
+/// Throws Error(cancelled).
 std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, const Adjacency& adjacency,
                                                         std::span<const VertexField> fields,
                                                         std::span<const double> sigmas,

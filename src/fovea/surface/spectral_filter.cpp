@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "fovea/base/float4.h"
 #include "fovea/base/parallel.h"
 #include "fovea/surface/curvature.h"
 
@@ -25,7 +26,6 @@ constexpr int kRings = 200;
 
 /// Fields that flow together, one in each lane of a vector register.
 constexpr std::size_t kLanes = 4;
-using Float4 [[gnu::vector_size(16)]] = float;
 float lane(float x, std::size_t) { return x; }
 float lane(Float4 x, std::size_t i) { return x[i]; }
 void set_lane(float& x, std::size_t, float value) { x = value; }
@@ -191,7 +191,7 @@ void SpectralFilter::run_together(std::span<const VertexField> fields,
     }
     // T_1 = X f, T_k+1 = 2 X T_k − T_k−1; the new one takes the place of the oldest.
     const float factor = k == 1 ? 1.0f : 2.0f, subtract = k == 1 ? 0.0f : 1.0f;
-    parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for_or_throw(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         Number flow = leave_[v] * now[v];
         for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) flow -= rate_[i] * now[column_[i]];
