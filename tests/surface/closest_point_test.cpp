@@ -19,7 +19,10 @@ TEST(ClosestPoint, NoPointOfTheTriangleIsNearer) {
   for (int i = 0; i < 300; ++i) {
     const Vec3d a = random_point(random), b = random_point(random), c = random_point(random),
                 p = random_point(random);
-    const Vec3d q = closest_on_triangle(p, a, b, c);
+    const auto [q, weights] = closest_on_triangle(p, a, b, c);
+    EXPECT_LT(length(a * weights[0] + b * weights[1] + c * weights[2] - q), 1e-12);
+    EXPECT_NEAR(weights[0] + weights[1] + weights[2], 1, 1e-12);
+    for (const double w : weights) EXPECT_GE(w, 0);
     // q is a point of the triangle ...
     const Vec3d n = cross(b - a, c - a);
     EXPECT_NEAR(dot(q - a, n), 0, 1e-12);
@@ -37,9 +40,9 @@ TEST(ClosestPoint, NoPointOfTheTriangleIsNearer) {
 
 TEST(ClosestPoint, WorksOnTrianglesWithoutArea) {
   const Vec3d a{0, 0, 0}, b{2, 0, 0};
-  EXPECT_LT(length(closest_on_triangle({1, 1, 0}, a, b, a) - Vec3d{1, 0, 0}), 1e-12);
-  EXPECT_LT(length(closest_on_triangle({1, 1, 0}, a, a, a)), 1e-12);
-  EXPECT_LT(length(closest_on_triangle({5, 1, 0}, a, b, {1, 0, 0}) - b), 1e-12);
+  EXPECT_LT(length(closest_on_triangle({1, 1, 0}, a, b, a).point - Vec3d{1, 0, 0}), 1e-12);
+  EXPECT_LT(length(closest_on_triangle({1, 1, 0}, a, a, a).point), 1e-12);
+  EXPECT_LT(length(closest_on_triangle({5, 1, 0}, a, b, {1, 0, 0}).point - b), 1e-12);
 }
 
 TEST(ClosestPoint, FindsWhatLookingAtEveryTriangleFinds) {
@@ -56,12 +59,17 @@ TEST(ClosestPoint, FindsWhatLookingAtEveryTriangleFinds) {
     double best = std::numeric_limits<double>::infinity();
     for (const auto& t : soup.triangles) {
       const Vec3d q = closest_on_triangle(p, Vec3d(soup.positions[t[0]]), Vec3d(soup.positions[t[1]]),
-                                          Vec3d(soup.positions[t[2]]));
+                                          Vec3d(soup.positions[t[2]]))
+                          .point;
       best = std::min(best, length(p - q));
     }
     const ClosestPoint::Hit hit = tree.nearest(p);
     EXPECT_EQ(hit.distance, best);
     EXPECT_EQ(length(hit.point - p), best);
+    Vec3d from_weights;
+    for (std::size_t k = 0; k < 3; ++k)
+      from_weights += Vec3d(soup.positions[soup.triangles[hit.triangle][k]]) * hit.weights[k];
+    EXPECT_LT(length(from_weights - hit.point), 1e-12);
   }
 }
 

@@ -118,13 +118,7 @@ OptionList describe(CompareOptions& o) {
 
 Surface triangles_of(const RenderScene& scene) {
   Surface surface;
-  for (const SceneMesh& mesh : scene.meshes) {
-    const auto first = static_cast<std::uint32_t>(surface.positions.size());
-    const std::vector<Vec3f>& positions = mesh.surface.positions;
-    surface.positions.insert(surface.positions.end(), positions.begin(), positions.end());
-    for (const auto& t : mesh.mesh->triangles)
-      surface.triangles.push_back({first + t[0].value, first + t[1].value, first + t[2].value});
-  }
+  for (const SceneMesh& mesh : scene.meshes) append(surface, *mesh.mesh, mesh.surface.positions);
   return surface;
 }
 

@@ -86,7 +86,7 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
                                 const CompareOptions& options, Context& context,
                                 const CompareObserver& observer = {});
 
-/// All triangles of a scene, in world space.
+/// All triangles of a scene, in world space, with the winding that their meshes have.
 Surface triangles_of(const RenderScene& scene);
 
 }  // namespace fovea

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "fovea/surface/disjoint_sets.h"
+
 namespace fovea {
 
 void CollapseMesh::link() {
@@ -127,25 +129,17 @@ void CollapseMesh::give_room(std::uint32_t begin, std::uint32_t size) {
 }
 
 FaceComponents find_components(const CollapseMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(mesh.vertices.size());
   for (const CollapseFace& face : mesh.faces) {
-    const auto& f = face.vertex;
-    for (const auto& [a, b] : {std::pair{f[0], f[1]}, std::pair{f[1], f[2]}}) {
-      const std::uint32_t ra = root(a), rb = root(b);
-      parent[std::max(ra, rb)] = std::min(ra, rb);
-    }
+    sets.unite(face.vertex[0], face.vertex[1]);
+    sets.unite(face.vertex[1], face.vertex[2]);
   }
   // Number components by their first face and sort faces by component.
-  std::vector<std::uint32_t> number(parent.size(), kInvalid), of_face(mesh.faces.size());
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kInvalid), of_face(mesh.faces.size());
   FaceComponents result;
   result.first.push_back(0);
   for (std::size_t f = 0; f < of_face.size(); ++f) {
-    std::uint32_t& n = number[root(mesh.faces[f].vertex[0])];
+    std::uint32_t& n = number[sets.find(mesh.faces[f].vertex[0])];
     if (n == kInvalid) {
       n = static_cast<std::uint32_t>(result.first.size() - 1);
       result.first.push_back(0);

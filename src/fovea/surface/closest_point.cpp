@@ -1,5 +1,6 @@
 #include "fovea/surface/closest_point.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,27 +8,36 @@
 
 namespace fovea {
 
-Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
+TrianglePoint closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
   const Vec3d ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return a;
+  if (d1 <= 0 && d2 <= 0) return {a, {1, 0, 0}};
   const Vec3d bp = p - b;
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return b;
+  if (d3 >= 0 && d4 <= d3) return {b, {0, 1, 0}};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 - d3 > 0 ? d1 / (d1 - d3) : 0.0);
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double s = d1 - d3 > 0 ? d1 / (d1 - d3) : 0.0;
+    return {a + ab * s, {1 - s, s, 0}};
+  }
   const Vec3d cp = p - c;
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return c;
+  if (d6 >= 0 && d5 <= d6) return {c, {0, 0, 1}};
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 - d6 > 0 ? d2 / (d2 - d6) : 0.0);
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double t = d2 - d6 > 0 ? d2 / (d2 - d6) : 0.0;
+    return {a + ac * t, {1 - t, 0, t}};
+  }
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
     const double sum = (d4 - d3) + (d5 - d6);
-    return b + (c - b) * (sum > 0 ? (d4 - d3) / sum : 0.0);
+    const double t = sum > 0 ? (d4 - d3) / sum : 0.0;
+    return {b + (c - b) * t, {0, 1 - t, t}};
   }
   const double sum = va + vb + vc;
-  return sum > 0 ? a + ab * (vb / sum) + ac * (vc / sum) : a;
+  if (!(sum > 0)) return {a, {1, 0, 0}};
+  const double s = vb / sum, t = vc / sum;
+  return {a + ab * s + ac * t, {std::max(1 - s - t, 0.0), s, t}};
 }
 
 struct ClosestPoint::Tree {
@@ -49,12 +59,12 @@ bool look_at_triangle(RTCPointQueryFunctionArguments* arguments) {
   Query& query = *static_cast<Query*>(arguments->userPtr);
   const auto& t = query.surface->triangles[arguments->primID];
   const auto at = [&](std::uint32_t v) { return Vec3d(query.surface->positions[v]); };
-  const Vec3d q = closest_on_triangle(query.p, at(t[0]), at(t[1]), at(t[2]));
-  const double distance = length(q - query.p);
+  const TrianglePoint q = closest_on_triangle(query.p, at(t[0]), at(t[1]), at(t[2]));
+  const double distance = length(q.point - query.p);
   ClosestPoint::Hit& best = query.best;
   if (distance > best.distance || (distance == best.distance && arguments->primID > best.triangle))
     return false;
-  best = {q, distance, arguments->primID};
+  best = {q.point, distance, arguments->primID, q.weights};
   // A little more, so that rounding hides no equally near triangle.
   arguments->query->radius = static_cast<float>(distance) * 1.00001f + std::numeric_limits<float>::min();
   return true;
@@ -68,7 +78,7 @@ ClosestPoint::ClosestPoint(ClosestPoint&&) noexcept = default;
 ClosestPoint& ClosestPoint::operator=(ClosestPoint&&) noexcept = default;
 
 ClosestPoint::Hit ClosestPoint::nearest(Vec3d p) const {
-  Query query{tree_->surface, p, {{}, std::numeric_limits<double>::infinity(), 0}};
+  Query query{tree_->surface, p, {{}, std::numeric_limits<double>::infinity(), 0, {}}};
   if (tree_->scene.empty()) return query.best;
   RTCPointQuery point;
   point.x = static_cast<float>(p.x);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -8,8 +9,14 @@
 
 namespace fovea {
 
+/// A point of a triangle, with the weights of its corners there: 0 … 1, of sum 1.
+struct TrianglePoint {
+  Vec3d point;
+  std::array<double, 3> weights{1, 0, 0};
+};
+
 /// The point of a triangle that is nearest to p (Ericson 2005, 5.1.5).
-Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c);
+TrianglePoint closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c);
 
 /// Finds the nearest points of a surface; built once, asked often, from any thread.
 class ClosestPoint {
@@ -18,6 +25,7 @@ class ClosestPoint {
     Vec3d point;
     double distance = 0;  ///< Infinite if the surface has no triangles.
     std::uint32_t triangle = 0;
+    std::array<double, 3> weights{1, 0, 0};  ///< Of its corners, as TrianglePoint has them.
   };
 
   /// O(#F log #F). `surface` must outlive this.

@@ -32,21 +32,15 @@ SceneSurface scene_surface(const Model& model, const Pose& pose) {
   scene.first_vertex.push_back(0);
   scene.first_triangle.push_back(0);
   std::vector<Vec3f>& positions = scene.surface.positions;
-  auto& triangles = scene.surface.triangles;
+  const auto& triangles = scene.surface.triangles;
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     const TriMesh& mesh = model.meshes[m].surface;
-    const auto first = static_cast<std::uint32_t>(positions.size());
     if (positions.size() + mesh.vertex_count() + 3 * (triangles.size() + mesh.face_count()) >
         std::numeric_limits<std::uint32_t>::max())
       throw Error(ErrorKind::limit, "the scene has more than 2^32 - 1 corners");
     if (largest[m] != nullptr) {
       const PosedSurface posed = posed_surface(model, pose, *largest[m]);
-      positions.insert(positions.end(), posed.positions.begin(), posed.positions.end());
-      for (const auto& t : mesh.triangles) {
-        auto& added =
-            triangles.emplace_back(std::array{first + t[0].value, first + t[1].value, first + t[2].value});
-        if (posed.mirrored) std::swap(added[1], added[2]);
-      }
+      append(scene.surface, mesh, posed.positions, posed.mirrored);
     } else {
       positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     }

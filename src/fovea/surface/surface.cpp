@@ -30,6 +30,16 @@ Surface surface_of(const TriMesh& mesh) {
   return surface;
 }
 
+void append(Surface& surface, const TriMesh& mesh, std::span<const Vec3f> positions, bool turned) {
+  const auto first = static_cast<std::uint32_t>(surface.positions.size());
+  surface.positions.insert(surface.positions.end(), positions.begin(), positions.end());
+  for (const auto& t : mesh.triangles) {
+    auto& added = surface.triangles.emplace_back(
+        std::array{first + t[0].value, first + t[1].value, first + t[2].value});
+    if (turned) std::swap(added[1], added[2]);
+  }
+}
+
 double diagonal(const Surface& surface) {
   Box box;
   for (const auto& triangle : surface.triangles) {

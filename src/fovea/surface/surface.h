@@ -22,6 +22,9 @@ struct Surface {
 
 /// The triangles of a mesh in its own space. O(#V + #F).
 Surface surface_of(const TriMesh& mesh);
+/// Appends the triangles of a mesh with its vertices at `positions` [#V]; `turned`: with their winding
+/// reversed. O(#V + #F).
+void append(Surface& surface, const TriMesh& mesh, std::span<const Vec3f> positions, bool turned = false);
 
 /// Diagonal of the box around the points that triangles use; 0 without triangles. O(#F).
 double diagonal(const Surface& surface);
