@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "fovea/model/texture_use.h"
 #include "fovea/model/weld.h"
 #include "fovea/surface/pose.h"
 
@@ -52,16 +53,21 @@ void add_extension_textures(const Material& material, std::vector<TextureUse>& u
   }
 }
 
+const char* name_of(TextureRole role) {
+  switch (role) {
+    case TextureRole::base_color: return "base color";
+    case TextureRole::metallic_roughness: return "metal roughness";
+    case TextureRole::normal: return "normal";
+    case TextureRole::occlusion: return "occlusion";
+    case TextureRole::emissive: return "emissive";
+  }
+  return "";
+}
+
 std::vector<TextureUse> texture_uses(const Model& model, const Material& material) {
   std::vector<TextureUse> uses;
-  const auto add = [&](const char* role, const std::optional<TextureRef>& ref) {
-    if (ref) uses.push_back({role, ref->texture, -1, ref->uv_set});
-  };
-  add("base color", material.base_color);
-  add("metal roughness", material.metallic_roughness);
-  add("normal", material.normal);
-  add("occlusion", material.occlusion);
-  add("emissive", material.emissive);
+  for (const auto& [role, ref] : textures_of(material))
+    uses.push_back({name_of(role), ref.texture, -1, ref.uv_set});
   add_extension_textures(material, uses);
   for (TextureUse& use : uses) {
     const bool known = use.texture >= 0 && static_cast<std::size_t>(use.texture) < model.textures.size();

@@ -11,7 +11,8 @@
 
 #include "fovea/base/random.h"
 #include "fovea/io/image_codec.h"
-#include "fovea/render/mip_map.h"
+#include "fovea/model/texture_use.h"
+#include "fovea/texture/mip_map.h"
 #include "support/meshes.h"
 #include "support/pictures.h"
 #include "support/reading.h"
@@ -142,7 +143,7 @@ TEST(Regions, AreWhereTheRendererSeesTheirTexels) {
     const MipMap map(counted(5, 3), ColorEncoding::linear);
     for (int n = 0; n < 500; ++n) {
       const double u = random.uniform(-3, 3), v = random.uniform(-3, 3);
-      const Vec2d at = matrix(transform)(u, v);
+      const Vec2d at = matrix(transform)({u, v});
       const Vec2f moved{static_cast<float>(at.x), static_cast<float>(at.y)};
       const auto grey = static_cast<std::uint32_t>(std::lround(map.sample(moved, {}, sampler).r * 255));
       // Double and single precision may part at the border of a texel: none of these is so near.

@@ -10,7 +10,7 @@
 namespace fovea {
 
 /// Reads the formats that have no reader of their own through the Open Asset Import Library: FBX,
-/// Collada (DAE), 3DS, DirectX (X), LightWave (LWO), AC3D (AC), 3MF and OFF. Its other importers are
+/// Collada (DAE), 3DS, DirectX (X), LightWave (LWO), AC3D (AC) and 3MF. Its other importers are
 /// switched off: they are untested here, or fail on damaged files in ways that cannot be caught.
 ///
 /// Nodes, materials with textures (embedded, or files inside the model's folder), skins and node

@@ -10,6 +10,7 @@
 
 #include "fovea/io/gltf_images_write.h"
 #include "fovea/io/uri.h"
+#include "fovea/model/texture_use.h"
 
 namespace fovea {
 
@@ -52,18 +53,15 @@ std::vector<PlacedMesh> placed_meshes(const Model& model) {
 }
 
 Vec2f UvSource::apply(const float* uv) const {
-  if (!transform) return {uv[0], 1.0f - uv[1]};
-  const double u = transform->scale.x * static_cast<double>(uv[0]);
-  const double v = transform->scale.y * static_cast<double>(uv[1]);
-  const double c = std::cos(transform->rotation_rad), s = std::sin(transform->rotation_rad);
-  return {static_cast<float>(transform->offset.x + c * u + s * v),
-          static_cast<float>(1 - (transform->offset.y - s * u + c * v))};
+  if (matrix == UvMatrixd{}) return {uv[0], 1.0f - uv[1]};
+  const Vec2d at = matrix({static_cast<double>(uv[0]), static_cast<double>(uv[1])});
+  return {static_cast<float>(at.x), static_cast<float>(1 - at.y)};
 }
 
 UvSource uv_source(const Model& model, int material) {
   if (material < 0) return {};
   const auto& base = model.materials[static_cast<std::size_t>(material)].base_color;
-  return base ? UvSource{base->uv_set, base->transform} : UvSource{};
+  return base ? UvSource{base->uv_set, matrix(*base)} : UvSource{};
 }
 
 std::vector<int> used_materials(const Model& model, const std::vector<PlacedMesh>& shown) {
@@ -79,11 +77,6 @@ std::vector<int> used_materials(const Model& model, const std::vector<PlacedMesh
     }
   }
   return result;
-}
-
-int image_of(const Model& model, const std::optional<TextureRef>& ref) {
-  if (!ref || ref->texture < 0) return -1;
-  return model.textures[static_cast<std::size_t>(ref->texture)].image;
 }
 
 std::vector<std::string> add_image_files(const Model& model, const std::vector<int>& images,

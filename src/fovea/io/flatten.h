@@ -1,7 +1,6 @@
 #pragma once
 
 #include <bit>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,7 +30,7 @@ std::vector<PlacedMesh> placed_meshes(const Model& model);
 /// Which texture coordinates a material's base colour reads.
 struct UvSource {
   int set = 0;
-  std::optional<TextureTransform> transform;
+  UvMatrixd matrix;
   friend bool operator==(const UvSource&, const UvSource&) = default;
 
   /// The coordinates with the transform worked in and the origin at the bottom left.
@@ -41,9 +40,6 @@ UvSource uv_source(const Model& model, int material);
 
 /// Indices of the materials that triangles of shown meshes use, in order of first use; -1 left out.
 std::vector<int> used_materials(const Model& model, const std::vector<PlacedMesh>& shown);
-
-/// Index of a texture's image, or -1.
-int image_of(const Model& model, const std::optional<TextureRef>& ref);
 
 /// Names that image files beside the output get [as many as `images`], their content in `files`.
 std::vector<std::string> add_image_files(const Model& model, const std::vector<int>& images,

@@ -9,6 +9,7 @@
 
 #include "fovea/io/flatten.h"
 #include "fovea/io/mtl_read.h"
+#include "fovea/model/texture_use.h"
 
 namespace fovea {
 

@@ -11,6 +11,7 @@
 #include "fovea/base/error.h"
 #include "fovea/base/srgb.h"
 #include "fovea/io/flatten.h"
+#include "fovea/model/texture_use.h"
 #include "fovea/model/weld.h"
 
 namespace fovea {

@@ -39,14 +39,16 @@ struct TextureTransform {
 };
 
 /// The same as a matrix: uv' = u · uv.x + v · uv.y + offset.
+template <class T>
 struct UvMatrix {
-  Vec2d u{1, 0}, v{0, 1}, offset{0, 0};
-  Vec2d operator()(double x, double y) const { return u * x + v * y + offset; }
+  Vec2<T> u{1, 0}, v{0, 1}, offset{0, 0};
+  Vec2<T> operator()(Vec2<T> uv) const { return direction(uv) + offset; }
+  /// Of a difference of coordinates.
+  Vec2<T> direction(Vec2<T> d) const { return u * d.x + v * d.y; }
+  friend bool operator==(const UvMatrix&, const UvMatrix&) = default;
 };
-inline UvMatrix matrix(const TextureTransform& t) {
-  const double c = std::cos(t.rotation_rad), s = std::sin(t.rotation_rad);
-  return {{c * t.scale.x, -s * t.scale.x}, {s * t.scale.y, c * t.scale.y}, t.offset};
-}
+using UvMatrixf = UvMatrix<float>;
+using UvMatrixd = UvMatrix<double>;
 
 /// A material's use of a texture.
 struct TextureRef {

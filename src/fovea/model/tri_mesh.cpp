@@ -61,6 +61,14 @@ AttributeLayer* TriMesh::find(Semantic semantic, int set) {
   return const_cast<AttributeLayer*>(std::as_const(*this).find(semantic, set));
 }
 
+bool is_white(const AttributeLayer& colors) {
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const float* const c = colors.value(ValueId{i});
+    if (!(c[0] >= 1 && c[1] >= 1 && c[2] >= 1)) return false;
+  }
+  return true;
+}
+
 Box bounds(const TriMesh& mesh) {
   Box box;
   for (const Vec3f& p : mesh.positions) box.add(Vec3d(p));

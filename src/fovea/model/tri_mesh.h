@@ -87,6 +87,9 @@ struct TriMesh {
   AttributeLayer* find(Semantic semantic, int set = 0);
 };
 
+/// Whether a layer of colours multiplies nothing: none is darker than white. O(#values).
+bool is_white(const AttributeLayer& colors);
+
 /// Bounding box of all vertices.
 Box bounds(const TriMesh& mesh);
 

@@ -25,9 +25,11 @@ inline float wrapped_coordinate(float u, Wrap wrap) {
   return u > 1 ? 2 - u : u;
 }
 
-/// A texture coordinate that can be looked up. Beyond a million turns floats know no fractions of a texel,
-/// and what is not finite is nowhere: both are 0.
-inline float usable_coordinate(float u) { return std::abs(u) < 1e6f ? u : 0; }
+/// Turns of a texture beyond which floats know little of where in a texel they are.
+inline constexpr float kMostTurns = 1e6f;
+
+/// A texture coordinate that can be looked up: 0 for those beyond `kMostTurns` and not finite ones.
+inline float usable_coordinate(float u) { return std::abs(u) < kMostTurns ? u : 0; }
 
 /// The texel of a row of `size` in which a sampler finds a usable coordinate.
 inline int nearest_texel(float u, int size, Wrap wrap) {

@@ -6,7 +6,7 @@
 
 #include "fovea/base/wide.h"
 #include "fovea/model/material.h"
-#include "fovea/render/mip_map.h"
+#include "fovea/texture/mip_map.h"
 
 namespace fovea {
 

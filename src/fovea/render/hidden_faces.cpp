@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fovea/base/parallel.h"
+#include "fovea/model/texture_use.h"
 #include "fovea/render/scene.h"
 #include "fovea/surface/key_poses.h"
 #include "fovea/surface/occlusion.h"
@@ -37,11 +38,6 @@ struct PosedFaces {
   std::vector<bool> double_sided_block;  // [#F of blockers]
 };
 
-const Material& material_of(const Model& model, const Part& part) {
-  static const Material kPlain;
-  return part.material >= 0 ? model.materials[static_cast<std::size_t>(part.material)] : kPlain;
-}
-
 bool blocks_sight(const Material& material) {
   return material.alpha_mode == AlphaMode::opaque &&
          material.json.find("KHR_materials_transmission") == std::string::npos;
@@ -52,18 +48,13 @@ PosedFaces posed_faces(const Model& model, const Pose& pose) {
   for (const Instance& instance : instances(model, pose)) {
     const TriMesh& mesh = model.meshes[instance.mesh].surface;
     const PosedSurface shape = posed_surface(model, pose, instance);
-    const auto first = static_cast<std::uint32_t>(posed.all.positions.size());
-    posed.all.positions.insert(posed.all.positions.end(), shape.positions.begin(), shape.positions.end());
+    const std::size_t first = posed.all.triangles.size();
+    append(posed.all, mesh, shape.positions, shape.mirrored);
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-      std::array<std::uint32_t, 3> t;
-      for (std::size_t k = 0; k < 3; ++k)
-        t[k] = first + static_cast<std::uint32_t>(mesh.triangles[f][k].index());
-      if (shape.mirrored) std::swap(t[1], t[2]);
       const Material& material = material_of(model, mesh.parts[mesh.face_part[f]]);
-      posed.all.triangles.push_back(t);
       posed.faces.push_back({static_cast<std::uint32_t>(instance.mesh), FaceId{f}, material.double_sided});
       if (!blocks_sight(material)) continue;
-      posed.blockers.triangles.push_back(t);
+      posed.blockers.triangles.push_back(posed.all.triangles[first + f]);
       posed.double_sided_block.push_back(material.double_sided);
     }
   }
@@ -71,6 +62,7 @@ PosedFaces posed_faces(const Model& model, const Pose& pose) {
   return posed;
 }
 
+/// Around the box of its points.
 Sphere sphere_around(const Surface& surface) {
   Box box;
   for (const Vec3f& p : surface.positions) box.add(Vec3d(p));
@@ -149,7 +141,7 @@ void look(const Model& model, const Pose& pose, const ViewOptions& views, const 
     return seen[face.mesh][face.face.index()];
   };
   std::vector<std::uint8_t> found(posed.faces.size(), 0);
-  parallel_for(context, posed.faces.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel_for_or_throw(context, posed.faces.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) found[f] = known(posed.faces[f]) != 0 || sight.sees(f);
   });
   for (std::size_t f = 0; f < posed.faces.size(); ++f) {

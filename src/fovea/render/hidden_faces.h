@@ -20,7 +20,8 @@ namespace fovea {
 /// animations or morph targets deform, eight key poses. Meshes that the scene does not show have no hidden
 /// faces.
 ///
-/// Throws what `views_of` throws. O(#eyes · #samples of hidden faces · log #F), parallel.
+/// Throws what `views_of` throws and Error(cancelled). O(#eyes · #samples of hidden faces · log #F),
+/// parallel.
 std::vector<std::vector<FaceId>> hidden_faces(const Model& model, const ViewOptions& views,
                                               const Context& context);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fovea/base/math.h"
-#include "fovea/render/mip_map.h"
+#include "fovea/texture/mip_map.h"
 
 namespace fovea {
 

@@ -8,7 +8,8 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
-#include "fovea/io/image_codec.h"
+#include "fovea/io/image_decoder.h"
+#include "fovea/model/texture_use.h"
 
 namespace fovea {
 
@@ -17,29 +18,26 @@ namespace {
 /// Numbers the images that materials ask for, and decodes them.
 class SceneImages {
  public:
-  SceneImages(const Model& model, SceneTextures textures) : model_(model), textures_(textures) {}
+  SceneImages(const Model& model, SceneTextures textures)
+      : model_(model), textures_(textures), decoder_(model) {}
 
-  /// Of a detail of the surface, which not everybody wants.
-  std::optional<SceneTexture> use_detail(const std::optional<TextureRef>& ref, ColorEncoding encoding) {
-    return textures_ == SceneTextures::all ? use(ref, encoding) : std::nullopt;
-  }
-
-  std::optional<SceneTexture> use(const std::optional<TextureRef>& ref, ColorEncoding encoding) {
-    if (!ref || ref->texture < 0) return std::nullopt;
-    const Texture& texture = model_.textures[static_cast<std::size_t>(ref->texture)];
-    if (texture.image < 0) return std::nullopt;
+  std::optional<SceneTexture> use(const Material& material, TextureRole role) {
+    const bool is_detail = role != TextureRole::base_color && role != TextureRole::metallic_roughness;
+    if (is_detail && textures_ != SceneTextures::all) return {};
+    const std::optional<TextureUse> use = resolve(model_, texture_ref(material, role));
+    if (!use) return {};
+    const std::pair key{use->image, encoding(role)};
+    const auto [entry, is_new] = number_.try_emplace(key, static_cast<int>(wanted_.size()));
+    if (is_new) wanted_.push_back(key);
     SceneTexture result;
-    const auto [entry, is_new] =
-        number_.try_emplace({texture.image, encoding}, static_cast<int>(wanted_.size()));
-    if (is_new) wanted_.push_back({texture.image, encoding});
     result.image = entry->second;
-    result.uv_set = ref->uv_set;
-    if (texture.sampler >= 0) result.sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
-    if (ref->transform) set_transform(result, *ref->transform);
+    result.uv_set = use->uv_set;
+    result.sampler = use->sampler;
+    result.matrix = rounded(use->matrix);
     return result;
   }
 
-  std::vector<SceneImage> make(Context& context, const RenderScene* other) const {
+  std::vector<SceneImage> make(Context& context, const RenderScene* other) {
     std::vector<SceneImage> images(wanted_.size());
     parallel_for(context, wanted_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -53,16 +51,6 @@ class SceneImages {
   }
 
  private:
-  static void set_transform(SceneTexture& texture, const TextureTransform& t) {
-    const UvMatrix m = matrix(t);
-    texture.xx = static_cast<float>(m.u.x);
-    texture.xy = static_cast<float>(m.v.x);
-    texture.x = static_cast<float>(m.offset.x);
-    texture.yx = static_cast<float>(m.u.y);
-    texture.yy = static_cast<float>(m.v.y);
-    texture.y = static_cast<float>(m.offset.y);
-  }
-
   static std::shared_ptr<const MipMap> find(const RenderScene& scene, const SceneImage& wanted) {
     for (const SceneImage& image : scene.images) {
       if (image.encoding == wanted.encoding && image.image->bytes == wanted.image->bytes) return image.map;
@@ -70,17 +58,14 @@ class SceneImages {
     return nullptr;
   }
 
-  static std::shared_ptr<const MipMap> decode(const SceneImage& wanted, int number, Context& context) {
-    try {
-      return std::make_shared<MipMap>(decode_image(wanted.image->bytes), wanted.encoding);
-    } catch (const Error& error) {
-      context.report("image-not-shown", error.message(), "/images/" + std::to_string(number));
-      return std::make_shared<MipMap>();
-    }
+  std::shared_ptr<const MipMap> decode(const SceneImage& wanted, int number, Context& context) {
+    const std::optional<Image8> image = decoder_.decode(static_cast<std::size_t>(number), context);
+    return image ? std::make_shared<MipMap>(*image, wanted.encoding) : std::make_shared<MipMap>();
   }
 
   const Model& model_;
   const SceneTextures textures_;
+  ImageDecoder decoder_;
   std::map<std::pair<int, ColorEncoding>, int> number_;
   std::vector<std::pair<int, ColorEncoding>> wanted_;  // image and encoding of each
 };
@@ -90,16 +75,16 @@ SceneMaterial scene_material(const Material& m, SceneImages& images) {
   const auto f = [](double x) { return static_cast<float>(x); };
   const auto& c = m.base_color_factor;
   s.base_color = {f(c[0]), f(c[1]), f(c[2]), f(c[3])};
-  s.base_color_texture = images.use(m.base_color, ColorEncoding::srgb);
+  s.base_color_texture = images.use(m, TextureRole::base_color);
   s.metallic = f(m.metallic_factor);
   s.roughness = f(m.roughness_factor);
-  s.metallic_roughness_texture = images.use(m.metallic_roughness, ColorEncoding::linear);
-  s.normal_texture = images.use_detail(m.normal, ColorEncoding::linear);
+  s.metallic_roughness_texture = images.use(m, TextureRole::metallic_roughness);
+  s.normal_texture = images.use(m, TextureRole::normal);
   s.normal_scale = f(m.normal_scale);
-  s.occlusion_texture = images.use_detail(m.occlusion, ColorEncoding::linear);
+  s.occlusion_texture = images.use(m, TextureRole::occlusion);
   s.occlusion_strength = f(m.occlusion_strength);
   s.emission = {f(m.emissive_factor[0]), f(m.emissive_factor[1]), f(m.emissive_factor[2]), 1};
-  s.emissive_texture = images.use_detail(m.emissive, ColorEncoding::srgb);
+  s.emissive_texture = images.use(m, TextureRole::emissive);
   s.alpha_mode = m.alpha_mode;
   s.alpha_cutoff = f(m.alpha_cutoff);
   s.double_sided = m.double_sided;
@@ -114,8 +99,7 @@ void finish_textures(RenderScene& scene) {
     return *scene.images[static_cast<std::size_t>(t.image)].map;
   };
   const auto same_look = [&](const SceneTexture& a, const SceneTexture& b) {
-    return a.uv_set == b.uv_set && a.xx == b.xx && a.xy == b.xy && a.x == b.x && a.yx == b.yx &&
-           a.yy == b.yy && a.y == b.y && a.sampler.wrap_u == b.sampler.wrap_u &&
+    return a.uv_set == b.uv_set && a.matrix == b.matrix && a.sampler.wrap_u == b.sampler.wrap_u &&
            a.sampler.wrap_v == b.sampler.wrap_v && a.sampler.mag_filter == b.sampler.mag_filter &&
            a.sampler.min_filter == b.sampler.min_filter && map(a).width() == map(b).width() &&
            map(a).height() == map(b).height();

@@ -8,9 +8,9 @@
 
 #include "fovea/base/context.h"
 #include "fovea/model/model.h"
-#include "fovea/render/mip_map.h"
 #include "fovea/render/view.h"
 #include "fovea/surface/pose.h"
+#include "fovea/texture/mip_map.h"
 
 namespace fovea {
 
@@ -20,8 +20,7 @@ struct SceneTexture {
   int look = -1;   ///< The same for textures that are looked up with the same footprint.
   int uv_set = 0;
   Sampler sampler;
-  /// uv' = (xx u + xy v + x, yx u + yy v + y), from KHR_texture_transform.
-  float xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;
+  UvMatrixf matrix;  ///< From KHR_texture_transform.
 };
 
 /// A material as the shading reads it.

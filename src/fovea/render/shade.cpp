@@ -33,10 +33,6 @@ Vec2f mix_uv(const std::array<float, 3>& weights, const std::array<const float*,
   return sum;
 }
 
-Vec2f transform_uv(const SceneTexture& t, Vec2f uv) {
-  return {t.xx * uv.x + t.xy * uv.y, t.yx * uv.x + t.yy * uv.y};
-}
-
 }  // namespace
 
 TriangleShader::TriangleShader(const RenderScene& scene, const Projection& projection, int anisotropy,
@@ -87,9 +83,9 @@ Rgba TriangleShader::look_up(const SceneTexture& texture, const SurfacePoint& po
   if (last.look != texture.look) {
     const auto corners = uv(texture.uv_set);
     if (corners[0] == nullptr) return {1, 1, 1, 1};
-    const Vec2f at = transform_uv(texture, mix_uv(point.weight, corners)) + Vec2f{texture.x, texture.y};
-    const UvSlopes slopes{transform_uv(texture, mix_uv(point.dx, corners)),
-                          transform_uv(texture, mix_uv(point.dy, corners))};
+    const Vec2f at = texture.matrix(mix_uv(point.weight, corners));
+    const UvSlopes slopes{texture.matrix.direction(mix_uv(point.dx, corners)),
+                          texture.matrix.direction(mix_uv(point.dy, corners))};
     last.footprint = map.footprint(at, slopes, texture.sampler, anisotropy_);
     last.look = texture.look;
   }
@@ -141,8 +137,8 @@ Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point, LastLo
     if (mesh_->surface.mirrored) side = -side;
   } else {
     const auto corner_uv = [&](std::size_t k) { return Vec2f{corners[k][0], corners[k][1]}; };
-    const Vec2f a = transform_uv(texture, corner_uv(1) - corner_uv(0)),
-                b = transform_uv(texture, corner_uv(2) - corner_uv(0));
+    const Vec2f a = texture.matrix.direction(corner_uv(1) - corner_uv(0)),
+                b = texture.matrix.direction(corner_uv(2) - corner_uv(0));
     const float area = cross(a, b);
     const Vec3f ea = positions_[1] - positions_[0], eb = positions_[2] - positions_[0];
     tangent = (ea * b.y - eb * a.y) * (area < 0 ? -1.0f : 1.0f);

@@ -6,7 +6,8 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
-#include "fovea/saliency/texel_scan.h"
+#include "fovea/texture/barycentric.h"
+#include "fovea/texture/texel_scan.h"
 
 namespace fovea {
 
@@ -51,35 +52,37 @@ std::vector<ImageF> planes_of(const TexelSource& source, const Sampler& sampler,
     return static_cast<float>(byte) * kByte * static_cast<float>(by);
   };
   std::vector<ImageF> planes;
-  switch (source.purpose) {
-    case Purpose::color: {
+  switch (source.role) {
+    case TextureRole::base_color: {
       TextureSignals signals = texture_signals(image, sampler, options, context);
       planes.push_back(std::move(signals.intensity));
       planes.push_back(std::move(signals.opponency));
       planes.push_back(std::move(signals.entropy));
       break;
     }
-    case Purpose::emission: planes.push_back(plane(grey_of_bytes)); break;
-    case Purpose::metallic_roughness:
+    case TextureRole::emissive: planes.push_back(plane(grey_of_bytes)); break;
+    case TextureRole::metallic_roughness:
       planes.push_back(plane([&](auto, auto g, auto) { return scaled(g, factor[1]); }));
       planes.push_back(plane([&](auto, auto, auto b) { return scaled(b, factor[2]); }));
       break;
-    case Purpose::normal:
+    case TextureRole::normal:
       planes.push_back(
           plane([&](auto r, auto g, auto b) { return bend(r, g, b, static_cast<float>(factor[0])); }));
       break;
+    case TextureRole::occlusion: break;
   }
   return planes;
 }
 
 }  // namespace
 
-Signal first_signal(Purpose purpose) {
-  switch (purpose) {
-    case Purpose::color: return Signal::intensity;
-    case Purpose::emission: return Signal::emission;
-    case Purpose::metallic_roughness: return Signal::roughness;
-    case Purpose::normal: return Signal::normal_detail;
+Signal first_signal(TextureRole role) {
+  switch (role) {
+    case TextureRole::base_color: return Signal::intensity;
+    case TextureRole::emissive: return Signal::emission;
+    case TextureRole::metallic_roughness: return Signal::roughness;
+    case TextureRole::normal: return Signal::normal_detail;
+    case TextureRole::occlusion: break;
   }
   return Signal::intensity;
 }
@@ -98,7 +101,7 @@ MaterialTexels::MaterialTexels(const TexelSource& source, const Image8& image, b
     : width_(image.width), height_(image.height) {
   sampler_.wrap_u = source.wrap_u;
   sampler_.wrap_v = source.wrap_v;
-  const bool is_light = source.purpose == Purpose::color || source.purpose == Purpose::emission;
+  const bool is_light = source.role == TextureRole::base_color || source.role == TextureRole::emissive;
   const bool has_factor = is_light && source.factor != std::array<double, 3>{1, 1, 1};
   const Image8 multiplied = has_factor ? with_factor(image, source.factor, context) : Image8();
   const Image8& seen = has_factor ? multiplied : image;
@@ -108,13 +111,6 @@ MaterialTexels::MaterialTexels(const TexelSource& source, const Image8& image, b
   smooth_ = smoothed(seen, sampler_, context);
   for (int i = 0; i <= kSmoothUnit; ++i)
     light_.push_back(srgb_to_linear(static_cast<float>(i) / kSmoothUnit));
-}
-
-Barycentric::Barycentric(const std::array<Vec2d, 3>& triangle)
-    : origin_(triangle[0]), a_(triangle[1] - triangle[0]), b_(triangle[2] - triangle[0]) {
-  const double area = cross(a_, b_), scale = area != 0 ? 1 / area : 0;
-  a_ = a_ * scale;
-  b_ = b_ * scale;
 }
 
 /// `signals(texel, corners)` gives those of a texel at a place with these weights of the corners.

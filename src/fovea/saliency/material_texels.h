@@ -9,6 +9,7 @@
 #include "fovea/base/math.h"
 #include "fovea/model/image.h"
 #include "fovea/model/material.h"
+#include "fovea/model/texture_use.h"
 #include "fovea/saliency/texture_signals.h"
 
 namespace fovea {
@@ -25,35 +26,20 @@ enum class Signal : std::size_t {
 };
 inline constexpr std::size_t kSignals = 7;
 
-/// What a texture is read for.
-enum class Purpose { color, emission, metallic_roughness, normal };
-inline constexpr Purpose kPurposes[] = {Purpose::color, Purpose::emission, Purpose::metallic_roughness,
-                                        Purpose::normal};
+/// The roles of textures that give signals.
+inline constexpr TextureRole kSignalRoles[] = {TextureRole::base_color, TextureRole::emissive,
+                                               TextureRole::metallic_roughness, TextureRole::normal};
 
 /// The first of the signals that a texture gives.
-Signal first_signal(Purpose purpose);
+Signal first_signal(TextureRole role);
 
 /// All that the signals of texels depend on: materials that agree in it share them. Sorted by image.
 struct TexelSource {
   int image = -1;
-  Purpose purpose = Purpose::color;
+  TextureRole role = TextureRole::base_color;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   std::array<double, 3> factor{1, 1, 1};  ///< What the material multiplies red, green and blue by.
   friend auto operator<=>(const TexelSource&, const TexelSource&) = default;
-};
-
-/// Places in a triangle as weights of its corners, with sum 1.
-class Barycentric {
- public:
-  explicit Barycentric(const std::array<Vec2d, 3>& triangle);
-  std::array<double, 3> at(Vec2d point) const {
-    const Vec2d p = point - origin_;
-    const double s = cross(p, b_), t = cross(a_, p);
-    return {1 - s - t, s, t};
-  }
-
- private:
-  Vec2d origin_, a_, b_;  // edges over twice the area; 0 if there is none
 };
 
 /// Mean signals of the texels of a triangle near each of its corners: those have the square of the corner's
@@ -112,7 +98,7 @@ class MaterialTexels {
 
   Sampler sampler_;
   int width_, height_;
-  std::vector<ImageF> planes_;           // from the purpose's first signal on
+  std::vector<ImageF> planes_;           // from the role's first signal on
   std::array<const float*, 3> plane_{};  // the last repeated
   Image<std::uint16_t> smooth_;          // if tinted
   std::vector<float> light_;             // of smoothed values, if tinted

@@ -8,15 +8,14 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <string>
 
-#include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
-#include "fovea/io/image_codec.h"
+#include "fovea/io/image_decoder.h"
 #include "fovea/model/image_fit.h"
+#include "fovea/model/texture_use.h"
 #include "fovea/saliency/material_texels.h"
-#include "fovea/saliency/uv_map.h"
 #include "fovea/surface/surface.h"
+#include "fovea/texture/uv_map.h"
 
 namespace fovea {
 
@@ -31,16 +30,6 @@ constexpr double kMostLooks = 1 << 25;
 constexpr double kLeastDensity = 0.01;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-const std::optional<TextureRef>& texture_of(const Material& material, Purpose purpose) {
-  switch (purpose) {
-    case Purpose::color: return material.base_color;
-    case Purpose::emission: return material.emissive;
-    case Purpose::metallic_roughness: return material.metallic_roughness;
-    case Purpose::normal: return material.normal;
-  }
-  return material.base_color;
-}
-
 Vec3d color_factor(const Material& material) {
   const auto& c = material.base_color_factor;
   return {c[0], c[1], c[2]};
@@ -51,13 +40,14 @@ Vec3d emission_factor(const Material& material) {
 }
 
 /// What a material multiplies red, green and blue of its texture by; x and y of its normal map.
-std::array<double, 3> factor_of(const Material& material, Purpose purpose) {
+std::array<double, 3> factor_of(const Material& material, TextureRole role) {
   const auto array = [](Vec3d x) { return std::array<double, 3>{x.x, x.y, x.z}; };
-  switch (purpose) {
-    case Purpose::color: return array(color_factor(material));
-    case Purpose::emission: return array(emission_factor(material));
-    case Purpose::metallic_roughness: return {1, material.roughness_factor, material.metallic_factor};
-    case Purpose::normal: return {material.normal_scale, material.normal_scale, 1};
+  switch (role) {
+    case TextureRole::base_color: return array(color_factor(material));
+    case TextureRole::emissive: return array(emission_factor(material));
+    case TextureRole::metallic_roughness: return {1, material.roughness_factor, material.metallic_factor};
+    case TextureRole::normal: return {material.normal_scale, material.normal_scale, 1};
+    case TextureRole::occlusion: break;
   }
   return {1, 1, 1};
 }
@@ -75,9 +65,9 @@ bool is_wanted(Signal signal, const SurfaceSignalOptions& options) {
   return false;
 }
 
-bool is_wanted(Purpose purpose, const SurfaceSignalOptions& options) {
-  return is_wanted(first_signal(purpose), options) ||
-         (purpose == Purpose::metallic_roughness && options.metalness);
+bool is_wanted(TextureRole role, const SurfaceSignalOptions& options) {
+  return is_wanted(first_signal(role), options) ||
+         (role == TextureRole::metallic_roughness && options.metalness);
 }
 
 /// A part of a mesh that uses a source.
@@ -91,11 +81,7 @@ struct Use {
 class VertexColors {
  public:
   explicit VertexColors(const TriMesh& mesh) : layer_(mesh.find(Semantic::color)) {
-    if (layer_ == nullptr) return;
-    for (std::size_t i = 0; i < layer_->size() && !tints_; ++i) {
-      const float* const c = layer_->value(ValueId{i});
-      tints_ = !(c[0] >= 1 && c[1] >= 1 && c[2] >= 1);
-    }
+    tints_ = layer_ != nullptr && !is_white(*layer_);
   }
   /// Whether any is not white.
   bool tints() const { return tints_; }
@@ -149,11 +135,6 @@ struct MeshState {
 
 Vec3f product(Vec3f a, Vec3f b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-const Material& material_of(const Model& model, const Part& part) {
-  static const Material kDefault;
-  return part.material < 0 ? kDefault : model.materials[static_cast<std::size_t>(part.material)];
-}
-
 std::array<Vec2d, 3> in_texels(const std::array<Vec2d, 3>& triangle, int width, int height) {
   std::array<Vec2d, 3> result;
   for (std::size_t k = 0; k < 3; ++k) result[k] = {triangle[k].x * width, triangle[k].y * height};
@@ -185,7 +166,7 @@ class SignalMaker {
  public:
   SignalMaker(const Model& model, std::span<const std::size_t> meshes, const SurfaceSignalOptions& options,
               Context& context)
-      : model_(model), options_(options), context_(context) {
+      : model_(model), options_(options), context_(context), decoder_(model) {
     for (const std::size_t mesh : meshes) states_.emplace_back(model.meshes[mesh].surface, options);
     for (std::size_t i = 0; i < states_.size(); ++i) find_uses(i);
   }
@@ -214,37 +195,29 @@ class SignalMaker {
     for (std::uint32_t part = 0; part < mesh.parts.size(); ++part) {
       if (states_[index].faces_of(part).empty()) continue;
       const Material& material = material_of(model_, mesh.parts[part]);
-      for (const Purpose purpose : kPurposes) {
-        const std::optional<TextureRef>& ref = texture_of(material, purpose);
-        if (!is_wanted(purpose, options_) || !ref || ref->texture < 0) continue;
-        const Texture& texture = model_.textures[static_cast<std::size_t>(ref->texture)];
-        UvMap map(mesh, *ref);
-        if (texture.image < 0 || map.layer == nullptr) continue;
-        TexelSource source{texture.image, purpose, Wrap::repeat, Wrap::repeat, factor_of(material, purpose)};
-        if (texture.sampler >= 0) {
-          const Sampler& sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
-          source.wrap_u = sampler.wrap_u;
-          source.wrap_v = sampler.wrap_v;
-        }
-        uses_[source].push_back({index, part, map});
+      for (const TextureRole role : kSignalRoles) {
+        if (!is_wanted(role, options_)) continue;
+        const std::optional<TextureUse> texture = resolve(model_, texture_ref(material, role));
+        if (!texture) continue;
+        const UvMap map(mesh, *texture);
+        if (map.layer == nullptr) continue;
+        uses_[{texture->image, role, texture->sampler.wrap_u, texture->sampler.wrap_v,
+               factor_of(material, role)}]
+            .push_back({index, part, map});
       }
     }
   }
 
   /// The image no larger than texels are judged; none if it cannot be decoded.
   std::optional<Image8> decode(int image) {
-    try {
-      return fitted(decode_image(model_.images[static_cast<std::size_t>(image)].bytes), kMostTexels,
-                    context_);
-    } catch (const Error& error) {
-      context_.report("image-not-shown", error.message(), "/images/" + std::to_string(image));
-      return {};
-    }
+    std::optional<Image8> decoded = decoder_.decode(static_cast<std::size_t>(image), context_);
+    if (decoded) decoded = fitted(*decoded, kMostTexels, context_);
+    return decoded;
   }
 
   /// Looks at the texels of a source for all triangles that use it.
   void look(const TexelSource& source, const Image8& image, const std::vector<Use>& uses) {
-    const bool tinted = source.purpose == Purpose::color &&
+    const bool tinted = source.role == TextureRole::base_color &&
                         std::any_of(uses.begin(), uses.end(),
                                     [&](const Use& use) { return states_[use.mesh].colors.tints(); });
     const MaterialTexels texels(source, image, tinted, options_.texture, context_);
@@ -267,17 +240,17 @@ class SignalMaker {
     const Cover covered = cover(triangle);
     const std::int64_t step = step_of(covered, most);
     const std::size_t c = std::size_t{3} * face;
-    const bool tinted = source.purpose == Purpose::color && state.is_tinted(face);
+    const bool tinted = source.role == TextureRole::base_color && state.is_tinted(face);
     const TexelMeans means =
         tinted ? texels.means(triangle, step,
                               {state.colors.light(c), state.colors.light(c + 1), state.colors.light(c + 2)})
                : texels.means(triangle, step);
     for (std::size_t s = 0; s < texels.signal_count(); ++s) {
-      std::vector<float>& values = state.values[static_cast<std::size_t>(first_signal(source.purpose)) + s];
+      std::vector<float>& values = state.values[static_cast<std::size_t>(first_signal(source.role)) + s];
       if (values.empty()) continue;
       for (std::size_t k = 0; k < 3; ++k) values[c + k] = means.mean(s, k);
     }
-    if (source.purpose == Purpose::color) state.texels[face] = static_cast<float>(covered.texels);
+    if (source.role == TextureRole::base_color) state.texels[face] = static_cast<float>(covered.texels);
   }
 
   /// How many texels a triangle may look at, as a power of two, for all together to stay below kMostLooks.
@@ -355,8 +328,7 @@ class SignalMaker {
     std::vector<double> areas;
     areas.reserve(surface.triangles.size());
     for (const auto& [a, b, c] : surface.triangles) {
-      const Vec3d p = surface.position(a);
-      areas.push_back(length(cross(surface.position(b) - p, surface.position(c) - p)) / 2);
+      areas.push_back(triangle_area(surface.position(a), surface.position(b), surface.position(c)));
     }
     const auto field = [&](Signal signal) { return at_vertices(signal, state, adjacency, areas); };
     SurfaceSignals result;
@@ -407,6 +379,7 @@ class SignalMaker {
   const Model& model_;
   const SurfaceSignalOptions& options_;
   Context& context_;
+  ImageDecoder decoder_;
   std::vector<MeshState> states_;
   std::map<TexelSource, std::vector<Use>> uses_;
 };

@@ -10,7 +10,7 @@
 #include "fovea/base/srgb.h"
 #include "fovea/base/wide.h"
 #include "fovea/model/image_fit.h"
-#include "fovea/saliency/texel_scan.h"
+#include "fovea/texture/texel_scan.h"
 
 namespace fovea {
 

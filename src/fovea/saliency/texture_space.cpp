@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -10,8 +11,9 @@
 #include "fovea/base/error.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/model/check_fields.h"
-#include "fovea/saliency/texel_scan.h"
-#include "fovea/saliency/uv_map.h"
+#include "fovea/model/texture_use.h"
+#include "fovea/texture/texel_canvas.h"
+#include "fovea/texture/uv_map.h"
 
 namespace fovea {
 
@@ -24,80 +26,9 @@ constexpr int kGutter = 4;
 /// shrunk to that, so that small images cost little.
 constexpr double kMostTexels = 4 * kLongestSide, kMostRepeats = 16;
 
-/// The corners of a triangle in the texture and the field there.
-struct FieldTriangle {
-  std::array<Vec2d, 3> texel;
-  std::array<float, 3> value{};
+using Canvas = TexelCanvas<float>;
 
-  float at(double x, double y) const {
-    const Vec2d a = texel[1] - texel[0], b = texel[2] - texel[0], p = Vec2d{x, y} - texel[0];
-    const double area = a.x * b.y - a.y * b.x;
-    const double u = area != 0 ? std::clamp((p.x * b.y - p.y * b.x) / area, 0.0, 1.0) : 0;
-    const double v = area != 0 ? std::clamp((a.x * p.y - a.y * p.x) / area, 0.0, 1.0 - u) : 0;
-    return static_cast<float>((1 - u - v) * static_cast<double>(value[0]) +
-                              u * static_cast<double>(value[1]) + v * static_cast<double>(value[2]));
-  }
-};
-
-/// A map that triangles are drawn into.
-class Canvas {
- public:
-  Canvas(int width, int height) : width_(width), height_(height), values_(size(), -1.0f) {}
-
-  void draw(const FieldTriangle& triangle, const Sampler& sampler) {
-    bool drawn = false;
-    for_texel_rows(triangle.texel, 1, [&](std::int64_t y, std::int64_t begin, std::int64_t end) {
-      const int row = wrapped_texel(y, height_, sampler.wrap_v);
-      drawn = true;
-      for (std::int64_t x = begin; x < end; ++x) {
-        put(wrapped_texel(x, width_, sampler.wrap_u), row,
-            triangle.at(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5));
-      }
-    });
-    if (drawn) return;
-    // Triangles between texel centres leave their mark as well.
-    const Vec2d middle = (triangle.texel[0] + triangle.texel[1] + triangle.texel[2]) * (1.0 / 3);
-    put(wrapped_texel(static_cast<std::int64_t>(std::floor(middle.x)), width_, sampler.wrap_u),
-        wrapped_texel(static_cast<std::int64_t>(std::floor(middle.y)), height_, sampler.wrap_v),
-        (triangle.value[0] + triangle.value[1] + triangle.value[2]) / 3);
-  }
-
-  void grow() {
-    const std::vector<float> before = values_;
-    for (int y = 0; y < height_; ++y) {
-      for (int x = 0; x < width_; ++x) {
-        if (before[index(x, y)] >= 0) continue;
-        for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-          const int nx = x + dx, ny = y + dy;
-          if (nx >= 0 && ny >= 0 && nx < width_ && ny < height_) put(x, y, before[index(nx, ny)]);
-        }
-      }
-    }
-  }
-
-  Image8 image() const {
-    Image8 result(width_, height_, 1, ColorEncoding::linear);
-    for (std::size_t i = 0; i < values_.size(); ++i)
-      result.pixels[i] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(values_[i], 0.0f, 1.0f)));
-    return result;
-  }
-
-  int width() const { return width_; }
-  int height() const { return height_; }
-
- private:
-  std::size_t size() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-  }
-  void put(int x, int y, float value) {
-    float& there = values_[index(x, y)];
-    there = std::max(there, value);
-  }
-
-  int width_, height_;
-  std::vector<float> values_;  // below 0 where nothing is
-};
+float larger(float a, float b) { return std::max(a, b); }
 
 /// An empty canvas of an image's size, or less where that is too much.
 Canvas canvas_for(const EncodedImage& image, int number) {
@@ -109,6 +40,17 @@ Canvas canvas_for(const EncodedImage& image, int number) {
   return {std::max(info.width / divisor, 1), std::max(info.height / divisor, 1)};
 }
 
+Image8 image_of(const Canvas& canvas) {
+  Image8 result(canvas.width(), canvas.height(), 1, ColorEncoding::linear);
+  for (int y = 0; y < canvas.height(); ++y) {
+    for (int x = 0; x < canvas.width(); ++x) {
+      const float value = canvas.at(x, y) > 0 ? std::min(canvas.at(x, y), 1.0f) : 0;
+      *result.at(x, y) = static_cast<std::uint8_t>(std::lround(255 * value));
+    }
+  }
+  return result;
+}
+
 /// How far a triangle is shrunk along an axis of `size` texels.
 double shrink(double a, double b, double c, int size) {
   const double extent = std::max({a, b, c}) - std::min({a, b, c});
@@ -116,30 +58,29 @@ double shrink(double a, double b, double c, int size) {
   return extent > most ? most / extent : 1;
 }
 
-/// The texture that is a part's base colour; none if its triangles have no place in one.
-const TextureRef* base_color(const Model& model, const TriMesh& mesh, const Part& part) {
-  if (part.raw || part.material < 0) return nullptr;
-  const auto& ref = model.materials[static_cast<std::size_t>(part.material)].base_color;
-  if (!ref || ref->texture < 0 || UvMap(mesh, *ref).layer == nullptr) return nullptr;
-  return model.textures[static_cast<std::size_t>(ref->texture)].image >= 0 ? &*ref : nullptr;
-}
-
-/// How the triangles of a part lie in the image that is drawn.
+/// How the triangles of a part lie in the image that is their base colour.
 struct PartPlace {
+  int image;
   UvMap map;
   Sampler sampler;
 };
 
-/// [#parts]; none for those that lie elsewhere.
+/// None if they have no place in one.
+std::optional<PartPlace> place_of(const Model& model, const TriMesh& mesh, const Part& part) {
+  if (part.raw) return {};
+  const std::optional<TextureUse> use = resolve(model, material_of(model, part).base_color);
+  if (!use) return {};
+  const UvMap map(mesh, *use);
+  if (map.layer == nullptr) return {};
+  return PartPlace{use->image, map, use->sampler};
+}
+
+/// Those of the parts in one image [#parts].
 std::vector<std::optional<PartPlace>> places(const Model& model, const TriMesh& mesh, int image) {
-  std::vector<std::optional<PartPlace>> result(mesh.parts.size());
-  for (std::size_t p = 0; p < result.size(); ++p) {
-    const TextureRef* const ref = base_color(model, mesh, mesh.parts[p]);
-    if (ref == nullptr) continue;
-    const Texture& texture = model.textures[static_cast<std::size_t>(ref->texture)];
-    if (texture.image != image) continue;
-    result[p] = {UvMap(mesh, *ref), {}};
-    if (texture.sampler >= 0) result[p]->sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
+  std::vector<std::optional<PartPlace>> result;
+  for (const Part& part : mesh.parts) {
+    auto& place = result.emplace_back(place_of(model, mesh, part));
+    if (place && place->image != image) place.reset();
   }
   return result;
 }
@@ -148,17 +89,20 @@ void draw_face(const TriMesh& mesh, std::uint32_t face, const PartPlace& place, 
                Canvas& canvas) {
   const auto uv = place.map.triangle(face);
   if (!uv) return;
-  FieldTriangle triangle;
-  auto& texel = triangle.texel;
+  std::array<Vec2d, 3> texel;
+  std::array<double, 3> value{};
   for (std::size_t k = 0; k < 3; ++k) {
     texel[k] = {(*uv)[k].x * canvas.width(), (*uv)[k].y * canvas.height()};
-    triangle.value[k] = field[mesh.triangles[face][k]];
+    value[k] = static_cast<double>(field[mesh.triangles[face][k]]);
   }
   const double x = shrink(texel[0].x, texel[1].x, texel[2].x, canvas.width()),
                y = shrink(texel[0].y, texel[1].y, texel[2].y, canvas.height());
   for (std::size_t k = 1; k < 3; ++k)
     texel[k] = {texel[0].x + x * (texel[k].x - texel[0].x), texel[0].y + y * (texel[k].y - texel[0].y)};
-  canvas.draw(triangle, place.sampler);
+  const auto value_at = [&](const std::array<double, 3>& weights) {
+    return static_cast<float>(weights[0] * value[0] + weights[1] * value[1] + weights[2] * value[2]);
+  };
+  canvas.draw(texel, place.sampler, value_at, larger);
 }
 
 }  // namespace
@@ -170,8 +114,8 @@ std::vector<int> texture_space_images(const Model& model) {
     std::vector<bool> used(surface.parts.size(), false);
     for (const std::uint32_t part : surface.face_part) used[part] = true;
     for (std::size_t p = 0; p < used.size(); ++p) {
-      const TextureRef* const ref = used[p] ? base_color(model, surface, surface.parts[p]) : nullptr;
-      if (ref != nullptr) images.insert(model.textures[static_cast<std::size_t>(ref->texture)].image);
+      const auto place = used[p] ? place_of(model, surface, surface.parts[p]) : std::nullopt;
+      if (place) images.insert(place->image);
     }
   }
   if (images.empty())
@@ -195,8 +139,8 @@ Image8 texture_space_map(const Model& model, const std::vector<VertexField>& fie
       if (place[mesh.face_part[f]]) draw_face(mesh, f, *place[mesh.face_part[f]], fields[m], canvas);
     }
   }
-  for (int i = 0; i < kGutter; ++i) canvas.grow();
-  return canvas.image();
+  canvas.grow(kGutter, larger);
+  return image_of(canvas);
 }
 
 }  // namespace fovea

@@ -98,9 +98,7 @@ FaceValues::FaceValues(const CollapseState& state, const ShownSurface& shown, co
     look.channel = find_channel(state, Semantic::uv, texture.uv_set);
     if (look.channel < 0) continue;
     look.texture = add_texture(scene, texture, material.base_color);
-    look.u = {texture.xx, texture.yx};
-    look.v = {texture.xy, texture.yy};
-    look.offset = {texture.x, texture.y};
+    look.matrix = texture.matrix;
   }
   if (content == PixelContent::lit) make_lights(scene, context);
 }
@@ -173,7 +171,7 @@ FaceLook FaceValues::look(const ShownInstance& showing, std::uint32_t f,
   if (material.texture >= 0 && corner_values(material.channel, f, planned, values)) {
     look.texture = &textures_[static_cast<std::size_t>(material.texture)];
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec2f uv = material.u * values[k][0] + material.v * values[k][1] + material.offset;
+      const Vec2f uv = material.matrix({values[k][0], values[k][1]});
       look.uv[k] = Float4{uv.x, uv.y, 0, 0};
     }
     const Float4 a = look.uv[1] - look.uv[0], b = look.uv[2] - look.uv[0];

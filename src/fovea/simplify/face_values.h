@@ -102,9 +102,9 @@ class FaceValues {
 
  private:
   struct MaterialLook {
-    int texture = -1;    // into textures_
-    int channel = -1;    // of the state: the texture coordinates
-    Vec2f u, v, offset;  // uv' = u · uv.x + v · uv.y + offset
+    int texture = -1;  // into textures_
+    int channel = -1;  // of the state: the texture coordinates
+    UvMatrixf matrix;
     PackedColor color = 0;
     std::uint32_t cutoff = 0;  // alpha below which there is a hole, 0 … 255
     bool unlit = false;

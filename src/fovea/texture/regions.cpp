@@ -5,12 +5,12 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/base/srgb.h"
-#include "fovea/io/image_codec.h"
+#include "fovea/io/image_decoder.h"
+#include "fovea/model/texture_use.h"
 #include "fovea/model/wrap.h"
 #include "fovea/texture/face_regions.h"
 
@@ -20,22 +20,9 @@ namespace {
 
 constexpr std::size_t kNoImage = std::numeric_limits<std::size_t>::max();
 
-const Material& material_of(const Model& model, const Part& part) {
-  static const Material kDefault;
-  return part.material < 0 ? kDefault : model.materials[static_cast<std::size_t>(part.material)];
-}
-
 /// Whether a layer has a value at the first corner of a face; then it has for the whole part.
 bool covers(const AttributeLayer* layer, std::uint32_t face) {
   return layer != nullptr && layer->corner_value[std::size_t{3} * face].valid();
-}
-
-bool is_white(const AttributeLayer& colors) {
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    const float* const c = colors.value(ValueId{i});
-    if (!(c[0] >= 1 && c[1] >= 1 && c[2] >= 1)) return false;
-  }
-  return true;
 }
 
 /// Mean colour of a triangle's corners times a factor, as display values 0 … 255.
@@ -59,7 +46,7 @@ Vec3f mean_color(const AttributeLayer& colors, std::uint32_t face, const std::ar
 class RegionFinder {
  public:
   RegionFinder(const Model& model, const SegmentOptions& options, Context& context)
-      : model_(model), options_(options), context_(context), result_(model) {
+      : model_(model), options_(options), context_(context), decoder_(model), result_(model) {
     result_.images_.resize(model.images.size());
     result_.face_labels_.resize(model.meshes.size());
     for (const Mesh& mesh : model.meshes) {
@@ -83,27 +70,21 @@ class RegionFinder {
   }
 
  private:
-  struct TextureUse {
-    const TextureRef* ref;
-    std::size_t image;
-  };
-
   /// How a part with triangles shows an image; none if it shows none.
   std::optional<TextureUse> texture_use(std::size_t mesh, std::size_t part) const {
     const TriMesh& surface = model_.meshes[mesh].surface;
     const std::uint32_t face = first_face_[mesh][part];
-    const auto& ref = material_of(model_, surface.parts[part]).base_color;
-    if (face == kInvalid || !ref || ref->texture < 0) return {};
-    const int image = model_.textures[static_cast<std::size_t>(ref->texture)].image;
-    if (image < 0 || !covers(surface.find(Semantic::uv, ref->uv_set), face)) return {};
-    return TextureUse{&*ref, static_cast<std::size_t>(image)};
+    if (face == kInvalid) return {};
+    auto use = resolve(model_, material_of(model_, surface.parts[part]).base_color);
+    if (use && !covers(surface.find(Semantic::uv, use->uv_set), face)) use.reset();
+    return use;
   }
 
   void segment_images() {
     std::vector<bool> is_shown(model_.images.size(), false);
     for (std::size_t m = 0; m < model_.meshes.size(); ++m) {
       for (std::size_t p = 0; p < result_.parts_[m].size(); ++p) {
-        if (const auto use = texture_use(m, p)) is_shown[use->image] = true;
+        if (const auto use = texture_use(m, p)) is_shown[static_cast<std::size_t>(use->image)] = true;
       }
     }
     for (std::size_t i = 0; i < is_shown.size(); ++i) {
@@ -114,12 +95,8 @@ class RegionFinder {
 
   /// Empty if the image cannot be decoded.
   LabelMap segmented(std::size_t image) {
-    try {
-      return segment_image(decode_image(model_.images[image].bytes), options_, context_);
-    } catch (const Error& error) {
-      context_.report("image-not-shown", error.message(), "/images/" + std::to_string(image));
-      return {};
-    }
+    const std::optional<Image8> decoded = decoder_.decode(image, context_);
+    return decoded ? segment_image(*decoded, options_, context_) : LabelMap{};
   }
 
   /// The first of so many new regions.
@@ -139,8 +116,9 @@ class RegionFinder {
     const auto& [r, g, b, a] = material_of(model_, surface.parts[part]).base_color_factor;
     PartRegions& regions = result_.parts_[mesh][part];
     const auto use = texture_use(mesh, part);
-    if (use && result_.images_[use->image].count > 0) {
-      regions.first_ = first_of({use->image, {r, g, b}}, result_.images_[use->image].count);
+    const std::size_t image = use ? static_cast<std::size_t>(use->image) : kNoImage;
+    if (use && result_.images_[image].count > 0) {
+      regions.first_ = first_of({image, {r, g, b}}, result_.images_[image].count);
       set_texture(regions, *use);
       return true;
     }
@@ -161,26 +139,14 @@ class RegionFinder {
   }
 
   void set_texture(PartRegions& regions, const TextureUse& use) const {
-    const LabelMap& map = result_.images_[use.image];
-    regions.uv_set_ = use.ref->uv_set;
+    const LabelMap& map = result_.images_[static_cast<std::size_t>(use.image)];
+    regions.uv_set_ = use.uv_set;
     regions.texel_label_ = map.labels;
     regions.width_ = map.width;
     regions.height_ = map.height;
-    const int sampler = model_.textures[static_cast<std::size_t>(use.ref->texture)].sampler;
-    if (sampler >= 0) {
-      regions.wrap_u_ = model_.samplers[static_cast<std::size_t>(sampler)].wrap_u;
-      regions.wrap_v_ = model_.samplers[static_cast<std::size_t>(sampler)].wrap_v;
-    }
-    if (use.ref->transform) set_transform(regions, matrix(*use.ref->transform));
-  }
-
-  static void set_transform(PartRegions& regions, const UvMatrix& m) {
-    regions.xx_ = static_cast<float>(m.u.x);
-    regions.xy_ = static_cast<float>(m.v.x);
-    regions.x_ = static_cast<float>(m.offset.x);
-    regions.yx_ = static_cast<float>(m.u.y);
-    regions.yy_ = static_cast<float>(m.v.y);
-    regions.y_ = static_cast<float>(m.offset.y);
+    regions.wrap_u_ = use.sampler.wrap_u;
+    regions.wrap_v_ = use.sampler.wrap_v;
+    regions.matrix_ = rounded(use.matrix);
   }
 
   /// Segments the triangles of all parts of a mesh that show vertex colours alone, across parts.
@@ -210,6 +176,7 @@ class RegionFinder {
   const Model& model_;
   const SegmentOptions& options_;
   Context& context_;
+  ImageDecoder decoder_;
   ModelRegions result_;
   std::vector<std::vector<std::uint32_t>> first_face_;  // [#meshes][#parts]
   std::map<Look, std::uint32_t> first_of_look_;
@@ -217,10 +184,9 @@ class RegionFinder {
 
 std::uint32_t PartRegions::region_at(FaceId face, Vec2f uv) const {
   if (!texel_label_.empty()) {
-    const float u = usable_coordinate(xx_ * uv.x + xy_ * uv.y + x_);
-    const float v = usable_coordinate(yx_ * uv.x + yy_ * uv.y + y_);
-    const auto x = static_cast<std::size_t>(nearest_texel(u, width_, wrap_u_));
-    const auto y = static_cast<std::size_t>(nearest_texel(v, height_, wrap_v_));
+    const Vec2f at = matrix_(uv);
+    const auto x = static_cast<std::size_t>(nearest_texel(usable_coordinate(at.x), width_, wrap_u_));
+    const auto y = static_cast<std::size_t>(nearest_texel(usable_coordinate(at.y), height_, wrap_v_));
     return first_ + texel_label_[y * static_cast<std::size_t>(width_) + x];
   }
   return face_label_.empty() ? first_ : first_ + face_label_[face.index()];

@@ -34,8 +34,8 @@ class PartRegions {
   std::span<const std::uint32_t> texel_label_;  // [height × width], or empty
   int width_ = 0, height_ = 0;
   Wrap wrap_u_ = Wrap::repeat, wrap_v_ = Wrap::repeat;
-  float xx_ = 1, xy_ = 0, x_ = 0, yx_ = 0, yy_ = 1, y_ = 0;  // uv' = (xx u + xy v + x, yx u + yy v + y)
-  std::span<const std::uint32_t> face_label_;                // [#F], or empty
+  UvMatrixf matrix_;
+  std::span<const std::uint32_t> face_label_;  // [#F], or empty
 };
 
 /// The regions of a model. Refers to the model, which must outlive it.

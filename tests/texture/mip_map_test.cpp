@@ -1,4 +1,4 @@
-#include "fovea/render/mip_map.h"
+#include "fovea/texture/mip_map.h"
 
 #include <gtest/gtest.h>
 

@@ -6,24 +6,21 @@
 #include <optional>
 
 #include "fovea/base/math.h"
-#include "fovea/model/material.h"
+#include "fovea/model/texture_use.h"
 #include "fovea/model/tri_mesh.h"
+#include "fovea/model/wrap.h"
 
-// Private to saliency.
+// Shared inside Fovea, not installed.
 
 namespace fovea {
 
-/// Where a material finds its texture on a mesh.
+/// Where the triangles of a mesh lie in a texture; without a layer they lie nowhere.
 struct UvMap {
-  /// Turns of a texture beyond which floats know little of where in a texel they are.
-  static constexpr double kMostTurns = 1e6;
-
   const AttributeLayer* layer = nullptr;
-  UvMatrix matrix;
+  UvMatrixd matrix;
 
-  UvMap(const TriMesh& mesh, const TextureRef& ref) : layer(mesh.find(Semantic::uv, ref.uv_set)) {
-    if (ref.transform) matrix = fovea::matrix(*ref.transform);
-  }
+  UvMap(const TriMesh& mesh, const TextureUse& use)
+      : layer(mesh.find(Semantic::uv, use.uv_set)), matrix(use.matrix) {}
 
   /// A triangle in the texture; none if it has no place there.
   std::optional<std::array<Vec2d, 3>> triangle(std::uint32_t face) const {
@@ -32,8 +29,9 @@ struct UvMap {
       const ValueId id = layer->corner_value[std::size_t{3} * face + k];
       if (!id.valid()) return {};
       const float* const uv = layer->value(id);
-      const Vec2d at = matrix(static_cast<double>(uv[0]), static_cast<double>(uv[1]));
-      if (!(std::abs(at.x) <= kMostTurns && std::abs(at.y) <= kMostTurns)) return {};
+      const Vec2d at = matrix({static_cast<double>(uv[0]), static_cast<double>(uv[1])});
+      constexpr auto kMost = static_cast<double>(kMostTurns);
+      if (!(std::abs(at.x) <= kMost && std::abs(at.y) <= kMost)) return {};
       corners[k] = at;
     }
     return corners;

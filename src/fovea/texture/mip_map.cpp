@@ -1,10 +1,11 @@
-#include "fovea/render/mip_map.h"
+#include "fovea/texture/mip_map.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
+#include "fovea/base/float4.h"
 #include "fovea/base/srgb.h"
 #include "fovea/model/wrap.h"
 
@@ -13,7 +14,6 @@ namespace fovea {
 namespace {
 
 // Numbers that go together through one register.
-using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 using Short8 [[gnu::vector_size(16)]] = std::uint16_t;
 using Long2 [[gnu::vector_size(16)]] = std::uint64_t;

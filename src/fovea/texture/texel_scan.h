@@ -10,6 +10,8 @@
 #include "fovea/model/material.h"
 #include "fovea/model/wrap.h"
 
+// Shared inside Fovea, not installed.
+
 namespace fovea {
 
 /// Calls f(y, begin, end) for rows of texels whose centres (x + ½, y + ½), begin ≤ x < end, lie in a triangle
