@@ -4,10 +4,9 @@
 
 #include <cmath>
 
-#include "fovea/io/file_bytes.h"
-#include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "fovea/judge/report.h"
+#include "input.h"
 #include "report.h"
 #include "text.h"
 #include "verb.h"
@@ -99,10 +98,10 @@ class Compare : public Verb {
     std::vector<Compared> tests;
     std::vector<const Model*> models;
     for (const std::string& test : tests_) tests.push_back(read(session, test));
-    for (const Compared& test : tests) models.push_back(&test.model);
+    for (const Compared& test : tests) models.push_back(&test.input.model);
     CompareReport report;
-    const std::vector<Comparison> found = session.phase("compare", [&] {
-      return compare(reference.model, models, options_, session.context,
+    const std::vector<Comparison> found = session.phase("compare", reference_, [&] {
+      return compare(reference.input.model, models, options_, session.context,
                      report_.empty() ? CompareObserver{} : report.observer());
     });
     if (!report_.empty()) session.phase("report", [&] { write_report(report, reference, tests, found); });
@@ -111,10 +110,8 @@ class Compare : public Verb {
   }
 
  private:
-  /// A model as it was read.
   struct Compared {
-    std::string path;
-    Model model;
+    Input input;
     Snapshot size;
   };
 
@@ -133,7 +130,7 @@ class Compare : public Verb {
   }
 
   static ReportModel report_model(const Compared& c) {
-    return {std::filesystem::path(c.path).filename().string(), c.size.counts.triangles,
+    return {std::filesystem::path(c.input.path).filename().string(), c.size.counts.triangles,
             c.size.counts.split_vertices, c.size.bytes.kinds};
   }
 
@@ -149,15 +146,15 @@ class Compare : public Verb {
   }
 
   Compared read(Session& session, const std::string& path) const {
-    return session.phase("read", [&] {
-      Model model = read_model(path, read_options_, session.context);
-      const Snapshot size = snapshot(model, measure_input(path, model));
-      return Compared{path, std::move(model), size};
-    });
+    Input input = read_input(session, path, read_options_);
+    const Snapshot size = snapshot(input.model, input.bytes);
+    need_triangles(input);
+    about(path, [&] { pose_of(input.model, options_.pose); });  // which of the models lacks it
+    return {std::move(input), size};
   }
 
   static Json file_json(const Compared& c) {
-    return {{"path", c.path}, {"bytes", c.size.bytes.files}, {"triangles", c.size.counts.triangles}};
+    return {{"path", c.input.path}, {"bytes", c.size.bytes.files}, {"triangles", c.size.counts.triangles}};
   }
 
   void tell(Session& session, const Compared& reference, const std::vector<Compared>& tests,
@@ -169,8 +166,8 @@ class Compare : public Verb {
     table.row({"", "triangles", "bytes", "FLIP lit", "base", "MS-SSIM lit", "base", "PSNR lit", "base",
                "outline", "surface"});
     const auto row = [&](const Compared& c, std::vector<std::string> scores) {
-      scores.insert(scores.begin(),
-                    {printable(c.path), count_text(c.size.counts.triangles), bytes_text(c.size.bytes.files)});
+      scores.insert(scores.begin(), {printable(c.input.path), count_text(c.size.counts.triangles),
+                                     bytes_text(c.size.bytes.files)});
       table.row(scores);
     };
     row(reference, {});

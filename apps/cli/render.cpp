@@ -8,7 +8,7 @@
 
 #include "field_source.h"
 #include "fovea/io/image_file.h"
-#include "fovea/io/read.h"
+#include "input.h"
 #include "report.h"
 #include "sheet.h"
 #include "text.h"
@@ -57,14 +57,15 @@ class Render : public Verb {
 
   int run(Session& session) override {
     check_request();
-    const Model model =
-        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
+    const Input input = read_input(session, input_, read_options_);
+    session.report["inputs"] = inputs_json({&input, 1});
+    need_triangles(input);
     std::vector<VertexField> fields;
-    if (!field_.empty()) fields = session.phase("field", [&] { return load_range(model, session); });
-    const Pose pose = pose_of(model, pose_options_);
-    const RenderScene scene =
-        session.phase("prepare", [&] { return make_render_scene(model, pose, session.context); });
-    const std::vector<View> views = chosen_views(model, pose, scene);
+    if (!field_.empty()) fields = session.phase("field", [&] { return load_range(input, session); });
+    const Pose pose = about(input_, [&] { return pose_of(input.model, pose_options_); });
+    const RenderScene scene = session.phase(
+        "prepare", input_, [&] { return make_render_scene(input.model, pose, session.context); });
+    const std::vector<View> views = about(input_, [&] { return chosen_views(input.model, pose, scene); });
     Image8 sheet = empty_sheet(views.size(), columns_, options_);
     const std::vector<Picture> pictures =
         session.phase("draw", [&] { return render_views(scene, views, options_, session.context, fields); });
@@ -102,8 +103,8 @@ class Render : public Verb {
   }
 
   /// The fields; for heat scaled to [0, 1] over all meshes, what is not a number is 0.
-  std::vector<VertexField> load_range(const Model& model, Session& session) {
-    std::vector<VertexField> fields = load_fields(field_, "--field", model, read_options_);
+  std::vector<VertexField> load_range(const Input& input, Session& session) {
+    std::vector<VertexField> fields = load_fields(field_, input, read_options_).fields;
     float low = std::numeric_limits<float>::infinity(), high = -low;
     for (const VertexField& field : fields) {
       for (const float x : field.values()) {

@@ -7,7 +7,6 @@
 
 #include "fovea/io/field_file.h"
 #include "fovea/io/image_file.h"
-#include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "fovea/render/heat_map.h"
 #include "fovea/render/render.h"
@@ -17,6 +16,7 @@
 #include "fovea/surface/curvature.h"
 #include "fovea/surface/scene_surface.h"
 #include "fovea/surface/statistics.h"
+#include "input.h"
 #include "report.h"
 #include "sheet.h"
 #include "text.h"
@@ -77,22 +77,21 @@ class Saliency : public Verb {
 
   int run(Session& session) override {
     check_request();
-    const Model model =
-        session.phase("read", [&] { return read_model(inputs_[0], read_options_, session.context); });
-    const std::vector<Model> poses =
-        session.phase("poses", [&] { return read_poses(model, session.context); });
-    report_inputs(model, poses, session);
-    if (kind_ == OutputKind::texture) images_ = texture_space_images(model);
+    const Input first = read_first(session);
+    const Model& model = first.model;
+    const std::vector<Model> poses = read_poses(model, session);
+    if (kind_ == OutputKind::texture)
+      images_ = about(first.path, [&] { return texture_space_images(model); });
     check_outputs(kWhole);
-    ModelSaliency found =
-        session.phase("saliency", [&] { return model_saliency(model, options_, session.context, poses); });
+    ModelSaliency found = session.phase(
+        "saliency", first.path, [&] { return model_saliency(model, options_, session.context, poses); });
     found.maps.push_back({kWhole, found.saliency});
     const Json statistics =
-        session.phase("statistics", [&] { return statistics_json(model, found, session); });
+        session.phase("statistics", first.path, [&] { return statistics_json(model, found, session); });
     const std::vector<const SaliencyMap*> maps = chosen(found);
     for (const SaliencyMap* map : maps) check_outputs(map->name);
     session.report["outputs"] = Json::array();
-    session.phase("write", [&] {
+    session.phase("write", first.path, [&] {
       for (const SaliencyMap* map : maps) write(model, *map, session);
     });
     tell(session, found, statistics);
@@ -146,23 +145,22 @@ class Saliency : public Verb {
     }
   }
 
-  std::vector<Model> read_poses(const Model& first, Context& context) const {
-    std::vector<Model> poses;
-    for (std::size_t i = 1; i < inputs_.size(); ++i) {
-      poses.push_back(read_model(inputs_[i], read_options_, context));
-      try {
-        surfaces_in(first, poses.back());
-      } catch (const Error& error) {
-        throw error.within(inputs_[i]);
-      }
-    }
-    return poses;
+  Input read_first(Session& session) const {
+    Input first = read_input(session, inputs_[0], read_options_);
+    session.report["inputs"] = inputs_json({&first, 1});
+    need_triangles(first);
+    return first;
   }
 
-  void report_inputs(const Model& model, const std::vector<Model>& poses, Session& session) const {
-    Json& json = session.report["inputs"] = Json::array();
-    for (std::size_t i = 0; i < inputs_.size(); ++i)
-      json.push_back(file_json(inputs_[i], measure_input(inputs_[i], i == 0 ? model : poses[i - 1])));
+  std::vector<Model> read_poses(const Model& first, Session& session) const {
+    std::vector<Model> poses;
+    for (std::size_t i = 1; i < inputs_.size(); ++i) {
+      Input pose = read_input(session, inputs_[i], read_options_);
+      session.report["inputs"].push_back(file_json(pose.path, pose.bytes));
+      about(pose.path, [&] { surfaces_in(first, pose.model); });
+      poses.push_back(std::move(pose.model));
+    }
+    return poses;
   }
 
   std::vector<const SaliencyMap*> chosen(const ModelSaliency& found) const {

@@ -35,6 +35,18 @@ Option describe_output(std::string& path);
 /// The option of verbs that write something else than a model.
 Option describe_force(bool& force);
 
+/// Runs `work` on what was read from `path`: an Error about the data gets the path before its place.
+template <class Work>
+auto about(const std::string& path, Work&& work) {
+  try {
+    return std::forward<Work>(work)();
+  } catch (const Error& error) {
+    const ErrorKind kind = error.kind();
+    if (kind != ErrorKind::format && kind != ErrorKind::unsupported && kind != ErrorKind::limit) throw;
+    throw error.within(path);
+  }
+}
+
 /// One run of a verb: the library's context, what is printed where, and the report for --json.
 ///
 /// stdout is for data, stderr for talk. `--json` turns everything on stdout into one object.
@@ -52,6 +64,11 @@ class Session {
     if (context.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
     const PhaseTimer timer(*this, name);
     return std::forward<Work>(work)();
+  }
+  /// The same `about` what was read from `path`.
+  template <class Work>
+  auto phase(const std::string& name, const std::string& path, Work&& work) {
+    return phase(name, [&] { return about(path, std::forward<Work>(work)); });
   }
 
   bool json() const { return common_.json; }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "field_source.h"
-#include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/auto_saliency.h"
 #include "fovea/simplify/salient.h"
+#include "input.h"
 #include "report.h"
 #include "simplify_text.h"
 #include "text.h"
@@ -80,18 +80,20 @@ class Simplify : public Verb {
 
   int run(Session& session) override {
     check_request();
-    const Model model =
-        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
-    const Snapshot before = snapshot(model, measure_input(input_, model));
+    const Input input = read_input(session, input_, read_options_);
+    const Model& model = input.model;
+    const Snapshot before = snapshot(model, input.bytes);
+    session.report["inputs"] = inputs_json({&input, 1});
+    session.report["before"] = to_json(before);
     Importance importance;
-    if (!importance_.empty()) {
-      importance = session.phase(
-          "importance", [&] { return load_fields(importance_, "--importance", model, read_options_); });
+    if (!importance_.empty())
+      importance = session.phase("importance", [&] { return load_importance(input); });
+    if (saliency_ != SaliencySource::none && before.counts.triangles > 0) {
+      importance =
+          session.phase("saliency", input_, [&] { return with_saliency(model, importance, session); });
     }
-    if (saliency_ != SaliencySource::none)
-      importance = session.phase("saliency", [&] { return with_saliency(model, importance, session); });
-    const SimplifyResult result =
-        session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });
+    const SimplifyResult result = session.phase(
+        "simplify", input_, [&] { return simplify(model, options_, importance, session.context); });
     const auto files = session.phase(
         "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
     const Snapshot after = snapshot(result.model, measure_output(files, result.model));
@@ -112,6 +114,12 @@ class Simplify : public Verb {
     }
     check_input(input_);
     check_output(output_, {input_}, write_options_.force);
+  }
+
+  Importance load_importance(const Input& input) const {
+    NamedFields found = load_fields(importance_, input, read_options_);
+    about(found.path, [&] { check(found.fields); });
+    return std::move(found.fields);
   }
 
   Importance with_saliency(const Model& model, const Importance& importance, Session& session) {
@@ -139,9 +147,7 @@ class Simplify : public Verb {
   int tell(Session& session, const Snapshot& before, const Snapshot& after,
            const SimplifyResult& result) const {
     const bool reached = reached_target(result, options_);
-    session.report["inputs"] = Json::array({file_json(input_, before.bytes)});
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
-    session.report["before"] = to_json(before);
     session.report["after"] = to_json(after);
     session.report["result"] = result_json(result, reached);
     session.print_summary(fmt::format("{} -> {}\n{}{}{}time     {}, peak memory {}\n", printable(input_),

@@ -65,8 +65,18 @@ TEST_F(CompareVerb, RefusesWhatItCannotDo) {
   EXPECT_THAT(fovea({"compare", grid_}).err, HasSubstr("MODEL is missing"));
   EXPECT_EQ(fovea({"compare", grid_, folder_ / "no.glb"}).code, 3);
   EXPECT_THAT(fovea({"compare", grid_, small_, "--time", "1"}).err, HasSubstr("--animation"));
-  EXPECT_THAT(fovea({"compare", grid_, small_, "--views", "cameras"}).err, HasSubstr("no cameras"));
+  EXPECT_THAT(fovea({"compare", grid_, small_, "--views", "cameras"}).err,
+              HasSubstr("grid.glb: the model has no cameras"));
   EXPECT_EQ(fovea({"compare", grid_, small_, "--view-size", "5"}).code, 2);
+}
+
+TEST_F(CompareVerb, SaysWhichModelLacksTheAnimation) {
+  const std::string arm = folder_ / "arm.glb";
+  ASSERT_EQ(fovea({"sample", "arm", "-o", arm, "--detail", "0.03"}).code, 0);
+  const Outcome outcome = fovea({"compare", arm, arm, grid_, "--animation", "0"});
+  EXPECT_EQ(outcome.code, 5);
+  EXPECT_EQ(outcome.err, "fovea: error: " + grid_ + ": the model has no animation 0\n" +
+                             "hint: it has none; leave out --animation\n");
 }
 
 }  // namespace

@@ -268,10 +268,23 @@ TEST_F(Verbs, SimplifyRefusesAnImportanceThatIsNotThere) {
     return std::pair(outcome.code, outcome.err);
   };
   EXPECT_EQ(code_and_error("no-such.npy").first, 3);
-  EXPECT_EQ(code_and_error("_NOT_THERE").first, 2);
-  const auto [code, error] = code_and_error(folder_.write("short.csv", "1\n2\n"));
-  EXPECT_EQ(code, 2);
-  EXPECT_THAT(error, HasSubstr("short.csv"));
+  EXPECT_EQ(code_and_error("_NOT_THERE").first, 5);
+  std::string values;
+  for (int i = 1; i < 25 * 25; ++i) values += "1\n";
+  const std::pair<std::string, std::string> wrong[] = {{"1\n2\n", "the field has 2 values"},
+                                                       {"nan\n" + values, "value 0 of the field is nan"},
+                                                       {"-inf\n" + values, "value 0 of the field is -inf"},
+                                                       {"-1\n" + values, "mesh 0 has the importance -1"}};
+  for (const auto& [text, message] : wrong) {
+    const auto [code, error] = code_and_error(folder_.write("wrong.csv", text));
+    EXPECT_EQ(code, 4) << message;
+    EXPECT_THAT(error, HasSubstr("wrong.csv: " + message));
+  }
+  folder_.write("lock.csv", "inf\n" + values);
+  EXPECT_EQ(fovea({"simplify", grid_, "-o", out("locked.glb"), "--ratio", "0.5", "--importance",
+                   out("lock.csv"), "--quiet"})
+                .code,
+            0);
   EXPECT_FALSE(std::filesystem::exists(out("x.glb")));
 }
 

@@ -197,7 +197,7 @@ class SourceOrder {
 
   void check_size(std::size_t count) const {
     if (count == sources_ || count == vertices_) return;
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::format,
                 fmt::format("the field has {} values but the model has {} source vertices ({} after welding)",
                             count, sources_, vertices_),
                 {}, "give one value per vertex in the order of the model's file");
@@ -339,8 +339,8 @@ std::vector<float> field_in_source_order(const Model& model, std::span<const Ver
 
 std::vector<VertexField> field_from_source_order(const Model& model, std::span<const float> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]))
-      throw Error(ErrorKind::usage, fmt::format("value {} of the field is not a finite number", i));
+    if (std::isnan(values[i]) || values[i] == -std::numeric_limits<float>::infinity())
+      throw Error(ErrorKind::format, fmt::format("value {} of the field is {}", i, values[i]));
   }
   return SourceOrder(model).map(values);
 }
@@ -362,7 +362,7 @@ std::vector<VertexField> field_from_attribute(const Model& model, const std::str
     found = found || here;
   }
   if (found) return fields;
-  throw Error(ErrorKind::usage, fmt::format("no mesh has a vertex attribute \"{}\"", name), {},
+  throw Error(ErrorKind::unsupported, fmt::format("no mesh has a vertex attribute \"{}\"", name), {},
               present.empty() ? "the model has no custom attributes and no vertex colours"
                               : fmt::format("there are: {}", fmt::join(present, ", ")));
 }

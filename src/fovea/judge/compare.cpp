@@ -134,7 +134,7 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
   const Pose pose = pose_of(reference, options.pose);
   const RenderScene scene = make_render_scene(reference, pose, context);
   if (scene.triangle_count == 0)
-    throw Error(ErrorKind::usage, "the reference has no triangles to compare with");
+    throw Error(ErrorKind::unsupported, "the reference has no triangles to compare with");
   std::vector<RenderScene> test_scenes;
   for (const Model* test : tests)
     test_scenes.push_back(make_render_scene(*test, pose_of(*test, options.pose), context, &scene));
