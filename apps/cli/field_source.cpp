@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 
+#include "fovea/io/extension.h"
 #include "fovea/io/field_file.h"
 
 namespace fovea::cli {
@@ -12,11 +13,10 @@ namespace {
 
 bool is_file(const std::string& source) {
   constexpr std::array<const char*, 3> kExtensions{".npy", ".csv", ".txt"};
-  const std::filesystem::path path(source);
   std::error_code ignored;
   // A misspelt file should be missed as a file, not as an attribute.
-  return std::find(kExtensions.begin(), kExtensions.end(), path.extension()) != kExtensions.end() ||
-         std::filesystem::is_regular_file(path, ignored);
+  return std::find(kExtensions.begin(), kExtensions.end(), lower_extension(source)) != kExtensions.end() ||
+         std::filesystem::is_regular_file(source, ignored);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "info_report.h"
 #include "input.h"
+#include "shared_options.h"
 #include "verb.h"
 
 namespace fovea::cli {
@@ -19,7 +20,7 @@ class Info : public Verb {
   }
 
   void declare(Arguments& arguments) override {
-    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add(model_argument(input_));
     arguments.add("Limits", describe(read_options_));
   }
 

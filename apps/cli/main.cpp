@@ -93,16 +93,38 @@ int run_and_report(Verb& verb, Session& session) {
   return code;
 }
 
-int run_verb(Verb& verb, const Words& words) {
+std::vector<std::string> verbs_with(const std::string& option) {
+  std::vector<std::string> owners;
+  for (const auto& verb : make_verbs()) {
+    Arguments arguments;
+    verb->declare(arguments);
+    if (arguments.has(option)) owners.push_back(verb->text().name);
+  }
+  return owners;
+}
+
+/// What a verb answers without running. True if that was all.
+bool answer(Verb& verb, const Words& words) {
+  if (has(words, "--help=markdown")) {
+    throw Error(ErrorKind::usage, "--help=markdown shows all verbs", {}, "write: fovea --help=markdown");
+  }
   if (has(words, "--help") || has(words, "-h")) {
     fmt::print("{}", verb_help(verb));
-    return 0;
+  } else if (has(words, "--version")) {
+    fmt::print("fovea {}\n", FOVEA_VERSION);
+  } else {
+    return false;
   }
+  return true;
+}
+
+int run_verb(Verb& verb, const Words& words) {
+  if (answer(verb, words)) return 0;
   CommonOptions common;
   Arguments arguments;
   verb.declare(arguments);
   arguments.add("Common", describe(common));
-  arguments.parse(words, verb.text().name);
+  arguments.parse(words, verb.text().name, verbs_with);
 
   Session session(common);
   session.report = report_head(verb.text().name);

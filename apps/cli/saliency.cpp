@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <limits>
 
+#include "fovea/io/extension.h"
 #include "fovea/io/field_file.h"
 #include "fovea/io/image_file.h"
 #include "fovea/io/write.h"
@@ -18,6 +18,7 @@
 #include "fovea/surface/statistics.h"
 #include "input.h"
 #include "report.h"
+#include "shared_options.h"
 #include "sheet.h"
 #include "text.h"
 #include "verb.h"
@@ -69,10 +70,13 @@ class Saliency : public Verb {
           &map_, "name"},
          describe_force(force_)});
     arguments.add("Picture", describe(view_options_));
-    arguments.add("Picture", {{"size", "Pixels along each side of a view.", &size_, "pixels", 16, 8192},
-                              {"columns", "Views side by side; 0 makes the sheet about square.", &columns_,
-                               "", 0, 4096}});
+    arguments.add("Picture", {describe_view_size(size_), describe_columns(columns_)});
     arguments.add("Limits", describe(read_options_));
+    need_views(arguments, view_options_);
+    arguments.need({{"views", "view-count", "elevation", "fov", "margin", "view-size", "columns"},
+                    "a picture as output",
+                    [&] { return output_.empty() || kind() == OutputKind::picture; },
+                    "name it .png, .jpg or .webp"});
   }
 
   int run(Session& session) override {
@@ -101,21 +105,18 @@ class Saliency : public Verb {
  private:
   void check_request() {
     for (const std::string& input : inputs_) check_input(input);
-    if (kind_ == OutputKind::by_extension) kind_ = kind_by_extension();
+    kind_ = kind();
     // Of several textures each gets a name of its own.
-    check_output(output_, inputs_, force_ || kind_ == OutputKind::texture, output_check());
+    check_place_of(output_, force_ || kind_ == OutputKind::texture);
+  }
+
+  void check_place_of(const std::string& output, bool force) const {
+    check_output(output, "heat.glb", inputs_, force, [&](const auto& path) { output_check()(path, force); });
   }
 
   /// Before anything is written: what stands in the way of any file of a map.
   void check_outputs(const std::string& map) const {
-    for (const std::string& path : paths_of(map)) check_output(path, inputs_, force_, output_check());
-  }
-
-  static std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
+    for (const std::string& path : paths_of(map)) check_place_of(path, force_);
   }
 
   static void check_attribute_output(const std::filesystem::path& path, bool force) {
@@ -126,7 +127,8 @@ class Saliency : public Verb {
     fovea::check_output(path, force);
   }
 
-  OutputKind kind_by_extension() const {
+  OutputKind kind() const {
+    if (kind_ != OutputKind::by_extension) return kind_;
     const std::string extension = lower_extension(output_);
     const auto is = [&](std::initializer_list<const char*> names) {
       return std::find(names.begin(), names.end(), extension) != names.end();
@@ -171,8 +173,11 @@ class Saliency : public Verb {
       if (map_ == kAll || map_ == map.name) maps.push_back(&map);
     }
     if (maps.empty()) {
+      const std::vector<std::string> near = nearest_names(map_, names);
       throw Error(ErrorKind::usage, fmt::format("there is no map \"{}\"", printable(map_)), "--map",
-                  fmt::format("there are: {}, {}", kAll, fmt::join(names, ", ")));
+                  fmt::format("{}there are: {}, {}",
+                              near.empty() ? "" : fmt::format("did you mean {}? ", near.front()), kAll,
+                              fmt::join(names, ", ")));
     }
     return maps;
   }
@@ -193,8 +198,6 @@ class Saliency : public Verb {
 
   void write(const Model& model, const SaliencyMap& map, Session& session) const {
     const std::vector<std::string> paths = paths_of(map.name);
-    WriteOptions options;
-    options.force = force_;
     switch (kind_) {
       case OutputKind::field:
         write_field(paths[0], field_in_source_order(model, map.fields), map.name, force_);
@@ -207,13 +210,22 @@ class Saliency : public Verb {
         }
         break;
       case OutputKind::attribute:
-        write_model(with_attribute(model, map.fields, attribute_name(map.name)), paths[0], options,
-                    session.context);
-        break;
-      default: write_model(heat_map(model, scaled(map.fields)), paths[0], options, session.context);
+        return write(with_attribute(model, map.fields, attribute_name(map.name)), paths[0], map, session);
+      default: return write(heat_map(model, scaled(map.fields)), paths[0], map, session);
     }
-    for (const std::string& path : paths)
-      session.report["outputs"].push_back({{"path", path}, {"map", map.name}});
+    for (const std::string& path : paths) report_output(file_json(path), map, session);
+  }
+
+  void write(const Model& made, const std::string& path, const SaliencyMap& map, Session& session) const {
+    WriteOptions options;
+    options.force = force_;
+    const auto files = write_model(made, path, options, session.context);
+    report_output(file_json(path, measure_output(files, made)), map, session);
+  }
+
+  static void report_output(Json output, const SaliencyMap& map, Session& session) {
+    output["map"] = map.name;
+    session.report["outputs"].push_back(std::move(output));
   }
 
   /// "_SALIENCY", "_CURVATURE_CONTRAST_1".
@@ -247,9 +259,7 @@ class Saliency : public Verb {
     const Pose pose = pose_of(heat, options_.pose);
     const RenderScene scene = make_render_scene(heat, pose, context);
     const std::vector<View> views = views_of(view_options_, heat, pose, scene.sphere);
-    Image8 sheet = empty_sheet(views.size(), columns_, options);
-    arrange(render_views(scene, views, options, context, fields), sheet);
-    return sheet;
+    return draw_sheet(scene, views, columns_, options, context, fields);
   }
 
   Json statistics_json(const Model& model, const ModelSaliency& found, Session& session) const {
@@ -284,11 +294,11 @@ class Saliency : public Verb {
       table.row({name, number_text(s["mean"]), number_text(s["deviation"]), number_text(s["median"]),
                  number_text(s["min"]) + " … " + number_text(s["max"])});
     }
-    session.print_summary(fmt::format("{} -> {}\n{}{}, {}, peak memory {}\n", printable(inputs_[0]),
+    session.print_summary(fmt::format("{} -> {}\n{}{}\n{}\n", printable(inputs_[0]),
                                       written.size() == 1 ? printable(written[0]["path"].get<std::string>())
                                                           : plural(written.size(), "file", "files"),
                                       table.text(0), plural(found.poses.size(), "pose", "poses"),
-                                      seconds_text(session.seconds()), bytes_text(peak_memory_bytes())));
+                                      session.spent_text()));
   }
 
   static ViewOptions montage_views() {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -11,7 +12,6 @@
 #include "fovea/base/context.h"
 #include "fovea/base/error.h"
 #include "fovea/base/options.h"
-#include "fovea/io/write.h"
 #include "progress.h"
 
 namespace fovea::cli {
@@ -28,12 +28,6 @@ struct CommonOptions {
   std::int64_t seed = 1;
 };
 OptionList describe(CommonOptions& options);
-
-/// The option of every verb that writes a file.
-Option describe_output(std::string& path);
-
-/// The option of verbs that write something else than a model.
-Option describe_force(bool& force);
 
 /// Runs `work` on what was read from `path`: an Error about the data gets the path before its place.
 template <class Work>
@@ -81,6 +75,8 @@ class Session {
   void say(const std::string& line);
 
   double seconds() const;
+  /// "0.42 s, peak memory 37.4 MB".
+  std::string spent_text() const;
   /// Tells the diagnostics, and with --json prints the report with diagnostics, times, memory and
   /// exit code. Throws Error(output) if stdout cannot be written.
   void finish(int exit_code);
@@ -116,10 +112,11 @@ class Session {
 /// Largest resident memory of this process so far.
 std::uint64_t peak_memory_bytes();
 
-/// Checks an output path before any work is spent on it: Error(usage) for none, for "-" and for a path
-/// that is an input without `force`, then all that `check` does: that of models, or that of pictures.
-void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force,
-                  void (*check)(const std::filesystem::path&, bool) = fovea::check_output);
+/// Checks an output path before any work is spent on it: Error(usage) for none, with an example, for "-" and
+/// for a path that is an input without `force`, then all that `check` does.
+void check_output(const std::string& output, const std::string& example,
+                  const std::vector<std::string>& inputs, bool force,
+                  const std::function<void(const std::filesystem::path&)>& check);
 
 /// An input path as given; Error(usage) for "-", Error(input) if it is missing or a folder.
 void check_input(const std::string& input);

@@ -22,7 +22,10 @@ TEST_F(CompareVerb, ReportsEveryView) {
       fovea({"compare", grid_, small_, grid_, "--views", "cube", "--view-size", "64", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
-  EXPECT_EQ(json["reference"]["triangles"], 1152);
+  ASSERT_EQ(json["inputs"].size(), 3u);
+  EXPECT_EQ(json["inputs"][0]["path"], grid_);
+  EXPECT_EQ(json["inputs"][0]["triangles"], 1152);
+  EXPECT_EQ(json["inputs"][1]["bytes"], std::filesystem::file_size(small_));
   ASSERT_EQ(json["results"].size(), 2u);
   const nlohmann::json &small = json["results"][0], &same = json["results"][1];
   EXPECT_EQ(small["path"], small_);
@@ -58,6 +61,10 @@ TEST_F(CompareVerb, WritesAPage) {
   EXPECT_THAT(read_text(page), HasSubstr("small.glb"));
   EXPECT_THAT(read_text(page), HasSubstr("</html>"));
   EXPECT_THAT(fovea(words).err, HasSubstr("--force"));
+  EXPECT_EQ(fovea({"compare", grid_, small_, "--views", "tetrahedron", "--view-size", "48", "--report",
+                   folder_ / "PAGE.HTML"})
+                .code,
+            0);
   EXPECT_THAT(fovea({"compare", grid_, small_, "--report", folder_ / "page.txt"}).err, HasSubstr(".html"));
 }
 

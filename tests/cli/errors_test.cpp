@@ -39,7 +39,7 @@ TEST(Errors, OverALimitNamesTheOption) {
   const Folder folder;
   const Outcome outcome = fovea({"info", write_grid(folder, "grid.glb"), "--max-elements", "10"});
   EXPECT_EQ(outcome.code, 6);
-  EXPECT_THAT(outcome.err, HasSubstr("max-elements"));
+  EXPECT_THAT(outcome.err, HasSubstr("raise --max-elements"));
 }
 
 TEST(Errors, OutputInNoFolder) {
@@ -76,6 +76,20 @@ TEST(Errors, UnknownOutputFormatIsRefusedBeforeTheWork) {
   const Outcome outcome =
       fovea({"simplify", write_grid(folder, "grid.glb"), "-o", folder / "out.abc", "--ratio", "0.5"});
   EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(folder.names(), ElementsAre("grid.glb"));
+}
+
+TEST(Errors, OptionsThatTheFormatHasNoUseFor) {
+  const Folder folder;
+  const std::string grid = write_grid(folder, "grid.glb");
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--quantize"}, {"--compression", "meshopt"}}) {
+    std::vector<std::string> words{"simplify", grid, "-o", folder / "x.obj", "--ratio", "0.5"};
+    words.insert(words.end(), option.begin(), option.end());
+    const Outcome outcome = fovea(words);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(option[0] + " is for .glb and .gltf"));
+  }
   EXPECT_THAT(folder.names(), ElementsAre("grid.glb"));
 }
 
@@ -121,7 +135,7 @@ TEST(Errors, JsonHoldsTheError) {
   EXPECT_EQ(outcome.code, 3);
   const nlohmann::json json = outcome.json();
   ASSERT_TRUE(json.is_object()) << outcome.out;
-  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["schema_version"], 2);
   EXPECT_EQ(json["verb"], "info");
   EXPECT_EQ(json["exit_code"], 3);
   EXPECT_EQ(json["error"]["kind"], "input");

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include <set>
 
 #include "fovea/base/error.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/read.h"
 #include "fovea/io/text_scan.h"
 #include "fovea/io/write.h"
@@ -218,17 +218,7 @@ class SourceOrder {
   std::size_t sources_ = 0, vertices_ = 0;
 };
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 bool is_npy_name(const std::filesystem::path& path) { return lower_extension(path) == ".npy"; }
-bool is_text_name(const std::filesystem::path& path) {
-  return lower_extension(path) == ".csv" || lower_extension(path) == ".txt";
-}
 
 std::string name_of(const AttributeLayer& layer) {
   if (layer.semantic == Semantic::custom) return layer.name;
@@ -305,10 +295,7 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
 }
 
 void check_field_output(const std::filesystem::path& path, bool force) {
-  if (!is_npy_name(path) && !is_text_name(path)) {
-    throw Error(ErrorKind::usage, fmt::format("fields are not written as \"{}\"", path.extension().string()),
-                path.string(), "name the output .npy, .csv or .txt");
-  }
+  check_extension(path, "fields", {".npy", ".csv", ".txt"});
   check_place(path, force);
 }
 

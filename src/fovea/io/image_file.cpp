@@ -1,11 +1,9 @@
 #include "fovea/io/image_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 #include <vector>
 
-#include "fovea/base/error.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/io/write.h"
 
@@ -15,23 +13,12 @@ namespace {
 
 constexpr int kJpegQuality = 92, kLossless = 101;
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 bool is_jpeg(const std::string& extension) { return extension == ".jpg" || extension == ".jpeg"; }
 
 }  // namespace
 
 void check_image_output(const std::filesystem::path& path, bool force) {
-  const std::string extension = lower_extension(path);
-  if (extension != ".png" && extension != ".webp" && !is_jpeg(extension)) {
-    throw Error(ErrorKind::usage, "is not the name of a picture that can be written", path.string(),
-                "use .png, .jpg or .webp");
-  }
+  check_extension(path, "pictures", {".png", ".jpg", ".jpeg", ".webp"});
   check_place(path, force);
 }
 

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
 #include <system_error>
 
 #include "fovea/base/error.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/gltf_write.h"
 #include "fovea/io/obj_write.h"
 #include "fovea/io/ply_write.h"
@@ -19,23 +19,6 @@ namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
-void check_extension(const fs::path& path) {
-  const std::string extension = extension_of(path);
-  for (const char* known : {".glb", ".gltf", ".obj", ".ply"}) {
-    if (extension == known) return;
-  }
-  throw Error(ErrorKind::usage,
-              extension.empty() ? std::string("the output has no file name extension")
-                                : fmt::format("'{}' is not a format that can be written", extension),
-              path.string(), "known: .glb, .gltf, .obj, .ply");
-}
 
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -182,7 +165,7 @@ fs::path place_of(const fs::path& path, const OutputFile& file) {
 
 std::vector<OutputFile> encode_model(const Model& model, const fs::path& path, const WriteOptions& options,
                                      Context& context) {
-  const std::string extension = extension_of(path), stem = path.stem().string();
+  const std::string extension = lower_extension(path), stem = path.stem().string();
   if (extension == ".obj") return write_obj(model, stem, context);
   if (extension == ".ply") return write_ply(model, stem, context);
   return write_gltf(model, extension == ".glb", stem, options, context).files;
@@ -214,8 +197,19 @@ OptionList describe(WriteOptions& o) {
 }
 
 void check_output(const fs::path& path, bool force) {
-  check_extension(path);
+  check_extension(path, "models", {".glb", ".gltf", ".obj", ".ply"});
   check_place(path, force);
+}
+
+void check_output(const fs::path& path, const WriteOptions& options) {
+  check_output(path, options.force);
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb" || extension == ".gltf") return;
+  const bool compressed = options.compression != GeometryCompression::none;
+  if (!options.quantize && !compressed) return;
+  throw Error(ErrorKind::usage,
+              fmt::format("{} is for .glb and .gltf", options.quantize ? "--quantize" : "--compression"),
+              path.string(), "leave it out, or name the output .glb");
 }
 
 void check_place(const fs::path& path, bool force) {
@@ -243,7 +237,7 @@ void write_files(const fs::path& path, std::span<const OutputFile> files, bool f
 
 std::vector<fs::path> write_model(const Model& model, const fs::path& path, const WriteOptions& options,
                                   Context& context) {
-  check_output(path, options.force);
+  check_output(path, options);
   WriteOptions checked = options;
   check(describe(checked));
   const std::vector<OutputFile> files = encode_model(model, path, options, context);

@@ -107,12 +107,17 @@ OptionList describe(CompareOptions& o) {
   options.insert(
       options.end(),
       {{"view-size", "Pixels along each side of a view.", &o.size, "pixels", 11, 8192},
-       {"samples", "Places per pixel and axis where the nearest surface is looked for.", &o.samples, "", 1,
-        8},
        {"pixels-per-degree", "Of the observer that FLIP stands for: 67 is a 4K screen at arm's length.",
         &o.pixels_per_degree, "", 1, 1000},
        {"distance-samples", "Points on each surface for the distance between them.", &o.distance_samples, "",
         100, 1e8}});
+  // As pictures have it.
+  RenderOptions picture;
+  for (Option& option : describe(picture)) {
+    if (option.name != "samples") continue;
+    option.value = &o.samples;
+    options.push_back(option);
+  }
   return options;
 }
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fovea {
+
+/// ".png" for "A.PNG"; empty without an extension.
+std::string lower_extension(const std::filesystem::path& path);
+
+/// Throws Error(usage) unless the extension, in upper or lower case, is one of `known`; `what` is to be
+/// written: "pictures".
+void check_extension(const std::filesystem::path& path, const std::string& what,
+                     const std::vector<std::string>& known);
+
+}  // namespace fovea
