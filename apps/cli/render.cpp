@@ -46,8 +46,9 @@ class Render : public Verb {
     arguments.add("Picture", {describe_view_size(size_)});
     OptionList picture = describe(options_);
     for (Option& option : picture) {
-      if (option.name == "width") option.value = &width_;
-      if (option.name == "height") option.value = &height_;
+      if (option.name != "width" && option.name != "height") continue;
+      option.value = option.name == "width" ? &width_ : &height_;
+      option.help.insert(option.help.size() - 1, ", instead of --view-size");
     }
     arguments.add("Picture", picture);
     arguments.add("Picture",
