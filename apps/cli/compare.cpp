@@ -187,6 +187,7 @@ class Compare : public Verb {
         "{}; FLIP: 0 is identical; outline: shared part of the silhouettes; surface: mean distance, of the "
         "diagonal\n",
         plural(found.empty() ? 0 : found.front().views.size(), "view", "views")));
+    session.print_summary(session.spent_text() + "\n");
   }
 
   std::string reference_;

@@ -43,6 +43,9 @@ TEST_F(CompareVerb, PrintsATable) {
   EXPECT_THAT(outcome.out, HasSubstr("MS-SSIM"));
   EXPECT_THAT(outcome.out, HasSubstr("small.glb"));
   EXPECT_THAT(outcome.out, HasSubstr("4 views"));
+  EXPECT_THAT(outcome.out, HasSubstr("peak memory"));
+  EXPECT_THAT(fovea({"compare", grid_, small_, "--views", "cube", "--view-size", "32", "--quiet"}).out,
+              ::testing::Not(HasSubstr("peak memory")));
 }
 
 TEST_F(CompareVerb, ComparesAcrossFormats) {
