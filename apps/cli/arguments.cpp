@@ -1,6 +1,7 @@
 #include "arguments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -20,11 +21,11 @@ bool looks_like_choice(const std::string& word) {
   return !word.empty() && word[0] != '-' && word.find_first_of("./\\") == std::string::npos;
 }
 
-// CLI11 counts a flag up for --name and down for --no-name and --name=false.
-void add_flag(CLI::App& app, Option& option, const std::string& names) {
-  bool* value = std::get<bool*>(option.value);
-  app.add_flag_function(
-      names + ",!--no-" + option.name, [value](std::int64_t count) { *value = count > 0; }, option.help);
+/// "quantize" of "--no-quantize=true".
+std::string bare(const std::string& flag) {
+  const std::size_t begin = flag.find_first_not_of('-'), end = flag.find('=');
+  const std::string name = begin < end ? flag.substr(begin, end - begin) : "";
+  return name.starts_with("no-") ? name.substr(3) : name;
 }
 
 }  // namespace
@@ -38,9 +39,8 @@ std::string short_flag(const std::string& option) {
 void Arguments::add(Positional positional) { positionals_.push_back(std::move(positional)); }
 
 void Arguments::add(const std::string& title, OptionList options) {
-  const std::vector<std::string> known = flags();
   for (const Option& option : options) {
-    if (std::find(known.begin(), known.end(), "--" + option.name) != known.end()) {
+    if (has(option.name)) {
       throw Error(ErrorKind::internal, "option declared twice", "--" + option.name);
     }
   }
@@ -54,25 +54,33 @@ void Arguments::add(const std::string& title, OptionList options) {
 
 void Arguments::add_hint(const std::string& option, std::string hint) { hints_[option] = std::move(hint); }
 
-std::vector<std::string> Arguments::flags() const {
-  std::vector<std::string> names{"--help", "--version"};
+std::vector<std::string> Arguments::names() const {
+  std::vector<std::string> names{"help", "version"};
   for (const OptionGroup& group : groups_) {
-    for (const Option& option : group.options) names.push_back("--" + option.name);
+    for (const Option& option : group.options) names.push_back(option.name);
   }
   return names;
 }
 
-void Arguments::refuse(const std::string& word, const std::string& verb) const {
+bool Arguments::has(const std::string& option) const {
+  const std::vector<std::string> known = names();
+  return std::find(known.begin(), known.end(), option) != known.end();
+}
+
+void Arguments::refuse(const std::string& word, const std::string& verb, const OptionOwners& owners) const {
   if (word.size() < 2 || word[0] != '-') {
     throw Error(ErrorKind::usage, fmt::format("'{}' is one argument too many", word), {}, help_hint(verb));
   }
   const std::string name = word.substr(0, word.find('='));
-  const std::vector<std::string> near = nearest_names(name, flags());
+  const std::vector<std::string> others = owners(bare(name)), near = nearest_names(bare(name), names());
   throw Error(ErrorKind::usage, fmt::format("unknown option '{}'", name), {},
-              near.empty() ? help_hint(verb) : fmt::format("did you mean {}?", near.front()));
+              !others.empty() ? fmt::format("--{} is an option of {}", bare(name), fmt::join(others, ", "))
+              : near.empty()  ? help_hint(verb)
+                              : fmt::format("did you mean --{}?", near.front()));
 }
 
-void Arguments::set(Option& option, const std::string& text) const {
+void Arguments::set(Option& option, const std::string& text) {
+  given_.insert(option.name);
   try {
     option.parse(text);
   } catch (const Error& error) {
@@ -97,7 +105,29 @@ std::vector<std::string> Arguments::with_values(std::vector<std::string> words) 
   return words;
 }
 
-void Arguments::parse(const std::vector<std::string>& words, const std::string& verb) {
+void Arguments::check_positionals(const std::string& verb) const {
+  const auto is_empty = [](const std::string& text) { return text.empty(); };
+  for (const Positional& p : positionals_) {
+    const bool missing = p.values != nullptr
+                             ? p.values->empty() || std::any_of(p.values->begin(), p.values->end(), is_empty)
+                             : p.value->empty();
+    if (p.required && missing)
+      throw Error(ErrorKind::usage, fmt::format("{} is missing", p.name), {}, help_hint(verb));
+  }
+}
+
+void Arguments::check_needs() const {
+  for (const Need& need : needs_) {
+    for (const std::string& option : need.options) {
+      if (given_.contains(option) && !need.holds()) {
+        throw Error(ErrorKind::usage, fmt::format("--{} needs {}", option, need.other), {}, need.hint);
+      }
+    }
+  }
+}
+
+void Arguments::parse(const std::vector<std::string>& words, const std::string& verb,
+                      const OptionOwners& owners) {
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
@@ -106,7 +136,9 @@ void Arguments::parse(const std::vector<std::string>& words, const std::string& 
       const std::string shorter = short_flag(option.name);
       const std::string names = (shorter.empty() ? "" : shorter + ",") + "--" + option.name;
       if (option.is_flag()) {
-        add_flag(app, option, names);
+        // CLI11 counts a flag up for --name and down for --no-name and --name=false.
+        const auto count_up = [&](std::int64_t count) { set(option, count > 0 ? "true" : "false"); };
+        app.add_flag_function(names + ",!--no-" + option.name, count_up, option.help);
       } else {
         app.add_option_function<std::string>(names, [&](const std::string& text) { set(option, text); })
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
@@ -137,13 +169,9 @@ void Arguments::parse(const std::vector<std::string>& words, const std::string& 
   const std::vector<std::string> rest = app.remaining();
   const auto flag =
       std::find_if(rest.begin(), rest.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
-  if (!rest.empty()) refuse(flag != rest.end() ? *flag : rest.front(), verb);
-  for (const Positional& positional : positionals_) {
-    if (positional.required &&
-        (positional.values != nullptr ? positional.values->empty() : positional.value->empty())) {
-      throw Error(ErrorKind::usage, fmt::format("{} is missing", positional.name), {}, help_hint(verb));
-    }
-  }
+  if (!rest.empty()) refuse(flag != rest.end() ? *flag : rest.front(), verb, owners);
+  check_positionals(verb);
+  check_needs();
 }
 
 }  // namespace fovea::cli

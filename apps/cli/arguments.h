@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fovea/base/options.h"
@@ -16,6 +19,17 @@ struct Positional {
   bool required = true;
   std::vector<std::string>* values = nullptr;  ///< Instead of `value`: one or more; must be the last.
 };
+
+/// Options that do nothing on their own: giving one is an error unless something else holds.
+struct Need {
+  std::vector<std::string> options;
+  std::string other;            ///< What they need: "--animation".
+  std::function<bool()> holds;  ///< Asked after parsing.
+  std::string hint{};
+};
+
+/// The verbs that have an option.
+using OptionOwners = std::function<std::vector<std::string>(const std::string& option)>;
 
 /// Options under one heading of `--help`.
 struct OptionGroup {
@@ -35,23 +49,31 @@ class Arguments {
   /// An extra hint for when the value given to an option is refused.
   void add_hint(const std::string& option, std::string hint);
 
-  /// Sets all values from the words after the verb. Throws Error(usage) with the nearest name for an
-  /// unknown flag, with the range for a bad value, for a missing or surplus argument.
-  void parse(const std::vector<std::string>& words, const std::string& verb);
+  void need(Need need) { needs_.push_back(std::move(need)); }
+
+  /// Sets all values from the words after the verb. Throws Error(usage) with the nearest name or the verbs
+  /// that have it for an unknown flag, with the range for a bad value, for a missing or surplus argument.
+  void parse(const std::vector<std::string>& words, const std::string& verb, const OptionOwners& owners);
+  bool has(const std::string& option) const;
 
   const std::vector<Positional>& positionals() const { return positionals_; }
   const std::vector<OptionGroup>& groups() const { return groups_; }
 
  private:
-  std::vector<std::string> flags() const;
+  std::vector<std::string> names() const;
   /// With the values of flags that stand alone.
   std::vector<std::string> with_values(std::vector<std::string> words) const;
-  [[noreturn]] void refuse(const std::string& word, const std::string& verb) const;
-  void set(Option& option, const std::string& text) const;
+  [[noreturn]] void refuse(const std::string& word, const std::string& verb,
+                           const OptionOwners& owners) const;
+  void set(Option& option, const std::string& text);
+  void check_positionals(const std::string& verb) const;
+  void check_needs() const;
 
   std::vector<Positional> positionals_;
   std::vector<OptionGroup> groups_;
   std::map<std::string, std::string> hints_;
+  std::vector<Need> needs_;
+  std::set<std::string> given_;  ///< Options that were set.
 };
 
 /// "-o" for the option "output", ...; empty for those without a short flag.

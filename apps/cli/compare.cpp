@@ -4,11 +4,12 @@
 
 #include <cmath>
 
-#include "fovea/io/file_bytes.h"
-#include "fovea/io/read.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/write.h"
 #include "fovea/judge/report.h"
+#include "input.h"
 #include "report.h"
+#include "shared_options.h"
 #include "text.h"
 #include "verb.h"
 
@@ -88,21 +89,29 @@ class Compare : public Verb {
                   {{"report", "Write a page with pictures of every view, ending in .html.", &report_, "file"},
                    describe_force(force_)});
     arguments.add("Limits", describe(read_options_));
+    need_views(arguments, options_.views);
+    arguments.need({{"force"}, "--report", [&] { return !report_.empty(); }});
   }
 
   int run(Session& session) override {
     check(options_.pose);
     check_input(reference_);
-    if (!report_.empty()) check_output(report_, inputs(), force_, check_report_output);
+    if (!report_.empty()) {
+      check_output(report_, "page.html", inputs(), force_, [&](const auto& path) {
+        check_extension(path, "pages", {".html"});
+        check_place(path, force_);
+      });
+    }
     for (const std::string& test : tests_) check_input(test);
+    session.report["inputs"] = Json::array();
     const Compared reference = read(session, reference_);
     std::vector<Compared> tests;
     std::vector<const Model*> models;
     for (const std::string& test : tests_) tests.push_back(read(session, test));
-    for (const Compared& test : tests) models.push_back(&test.model);
+    for (const Compared& test : tests) models.push_back(&test.input.model);
     CompareReport report;
-    const std::vector<Comparison> found = session.phase("compare", [&] {
-      return compare(reference.model, models, options_, session.context,
+    const std::vector<Comparison> found = session.phase("compare", reference_, [&] {
+      return compare(reference.input.model, models, options_, session.context,
                      report_.empty() ? CompareObserver{} : report.observer());
     });
     if (!report_.empty()) session.phase("report", [&] { write_report(report, reference, tests, found); });
@@ -111,10 +120,8 @@ class Compare : public Verb {
   }
 
  private:
-  /// A model as it was read.
   struct Compared {
-    std::string path;
-    Model model;
+    Input input;
     Snapshot size;
   };
 
@@ -124,16 +131,8 @@ class Compare : public Verb {
     return all;
   }
 
-  static void check_report_output(const std::filesystem::path& path, bool force) {
-    if (path.extension() != ".html") {
-      throw Error(ErrorKind::usage, "is not the name of a page", path.string(),
-                  "use a name that ends in .html");
-    }
-    check_place(path, force);
-  }
-
   static ReportModel report_model(const Compared& c) {
-    return {std::filesystem::path(c.path).filename().string(), c.size.counts.triangles,
+    return {std::filesystem::path(c.input.path).filename().string(), c.size.counts.triangles,
             c.size.counts.split_vertices, c.size.bytes.kinds};
   }
 
@@ -149,34 +148,32 @@ class Compare : public Verb {
   }
 
   Compared read(Session& session, const std::string& path) const {
-    return session.phase("read", [&] {
-      Model model = read_model(path, read_options_, session.context);
-      const Snapshot size = snapshot(model, measure_input(path, model));
-      return Compared{path, std::move(model), size};
-    });
-  }
-
-  static Json file_json(const Compared& c) {
-    return {{"path", c.path}, {"bytes", c.size.bytes.files}, {"triangles", c.size.counts.triangles}};
+    Input input = read_input(session, path, read_options_);
+    const Snapshot size = snapshot(input.model, input.bytes);
+    Json json = file_json(path, input.bytes);
+    json["triangles"] = size.counts.triangles;
+    session.report["inputs"].push_back(std::move(json));
+    need_triangles(input);
+    about(path, [&] { pose_of(input.model, options_.pose); });  // which of the models lacks it
+    return {std::move(input), size};
   }
 
   void tell(Session& session, const Compared& reference, const std::vector<Compared>& tests,
             const std::vector<Comparison>& found) const {
-    session.report["reference"] = file_json(reference);
-    if (!report_.empty()) session.report["outputs"] = Json::array({{{"path", report_}}});
+    if (!report_.empty()) session.report["outputs"] = Json::array({file_json(report_)});
     Json& results = session.report["results"] = Json::array();
     TextTable table("lrrrrrrrrrr");
     table.row({"", "triangles", "bytes", "FLIP lit", "base", "MS-SSIM lit", "base", "PSNR lit", "base",
                "outline", "surface"});
     const auto row = [&](const Compared& c, std::vector<std::string> scores) {
-      scores.insert(scores.begin(),
-                    {printable(c.path), count_text(c.size.counts.triangles), bytes_text(c.size.bytes.files)});
+      scores.insert(scores.begin(), {printable(c.input.path), count_text(c.size.counts.triangles),
+                                     bytes_text(c.size.bytes.files)});
       table.row(scores);
     };
     row(reference, {});
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Comparison& c = found[i];
-      Json json = file_json(tests[i]);
+      Json json{{"path", tests[i].input.path}};
       json.update(to_json(c));
       results.push_back(std::move(json));
       const ImageScores &lit = c[JudgedPass::lit], &base = c[JudgedPass::base_color];
@@ -190,6 +187,7 @@ class Compare : public Verb {
         "{}; FLIP: 0 is identical; outline: shared part of the silhouettes; surface: mean distance, of the "
         "diagonal\n",
         plural(found.empty() ? 0 : found.front().views.size(), "view", "views")));
+    session.print_summary(session.spent_text() + "\n");
   }
 
   std::string reference_;

@@ -1,5 +1,6 @@
-#include "fovea/io/read.h"
 #include "info_report.h"
+#include "input.h"
+#include "shared_options.h"
 #include "verb.h"
 
 namespace fovea::cli {
@@ -19,20 +20,19 @@ class Info : public Verb {
   }
 
   void declare(Arguments& arguments) override {
-    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add(model_argument(input_));
     arguments.add("Limits", describe(read_options_));
   }
 
   int run(Session& session) override {
     check_input(input_);
-    const Model model =
-        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
-    const Snapshot totals = snapshot(model, measure_input(input_, model));
-    const ModelFacts facts = session.phase("inspect", [&] { return inspect(model, session.context); });
-
-    session.report["inputs"] = Json::array({file_json(input_, totals.bytes)});
-    add_info_json(session.report, model, facts, totals);
-    session.print(info_text(input_, model, facts, totals, session.verbose()));
+    const Input input = read_input(session, input_, read_options_);
+    session.report["inputs"] = inputs_json({&input, 1});
+    const Snapshot totals = snapshot(input.model, input.bytes);
+    const ModelFacts facts =
+        session.phase("inspect", input_, [&] { return inspect(input.model, session.context); });
+    add_info_json(session.report, input.model, facts, totals);
+    session.print(info_text(input_, input.model, facts, totals, session.verbose()));
     return 0;
   }
 

@@ -87,7 +87,7 @@ void add_info_json(Json& report, const Model& model, const ModelFacts& facts, co
     const Animation& animation = model.animations[i];
     return {{"name", animation.name},
             {"channels", animation.channels.size()},
-            {"seconds", facts.animation_seconds[i]}};
+            {"duration_s", facts.animation_seconds[i]}};
   });
   list("skins", model.skins.size(), [&](std::size_t i) -> Json {
     return {{"name", model.skins[i].name}, {"joints", model.skins[i].joints.size()}};

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,24 +58,79 @@ bool answer(const Words& words) {
   return true;
 }
 
-int run_verb(Verb& verb, const Words& words) {
+/// The exception that is being handled, as what is told.
+Error caught() {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return error;
+  } catch (const std::bad_alloc&) {
+    return {ErrorKind::limit, "out of memory", {}, "the model is too large for this machine"};
+  } catch (const std::exception& error) {
+    return {ErrorKind::internal, error.what(), {}, "this is a fault of Fovea: please report it"};
+  }
+}
+
+void tell(const Error& error) {
+  const std::string place = error.place().empty() ? "" : error.place() + ": ";
+  fmt::print(stderr, "fovea: error: {}\n", printable(place + error.message()));
+  if (!error.hint().empty()) fmt::print(stderr, "hint: {}\n", printable(error.hint()));
+}
+
+/// The exit code of the verb; of one that fails, whose report keeps what it holds so far, that of its error.
+int run_and_report(Verb& verb, Session& session) {
+  std::optional<Error> failure;
+  int code = 0;
+  try {
+    code = verb.run(session);
+  } catch (...) {
+    failure = caught();
+    code = exit_code(failure->kind());
+    session.report["error"] = error_json(*failure);
+  }
+  session.finish(code);
+  if (failure) tell(*failure);
+  return code;
+}
+
+std::vector<std::string> verbs_with(const std::string& option) {
+  std::vector<std::string> owners;
+  for (const auto& verb : make_verbs()) {
+    Arguments arguments;
+    verb->declare(arguments);
+    if (arguments.has(option)) owners.push_back(verb->text().name);
+  }
+  return owners;
+}
+
+/// What a verb answers without running. True if that was all.
+bool answer(Verb& verb, const Words& words) {
+  if (has(words, "--help=markdown")) {
+    throw Error(ErrorKind::usage, "--help=markdown shows all verbs", {}, "write: fovea --help=markdown");
+  }
   if (has(words, "--help") || has(words, "-h")) {
     fmt::print("{}", verb_help(verb));
-    return 0;
+  } else if (has(words, "--version")) {
+    fmt::print("fovea {}\n", FOVEA_VERSION);
+  } else {
+    return false;
   }
+  return true;
+}
+
+int run_verb(Verb& verb, const Words& words) {
+  if (answer(verb, words)) return 0;
   CommonOptions common;
   Arguments arguments;
   verb.declare(arguments);
   arguments.add("Common", describe(common));
-  arguments.parse(words, verb.text().name);
+  arguments.parse(words, verb.text().name, verbs_with);
 
   Session session(common);
   session.report = report_head(verb.text().name);
   session.report["options"] = options_json(arguments);
   const CancelOnSignal guard(session.context);
-  const int code = verb.run(session);
-  session.finish(code);
-  return code;
+  return run_and_report(verb, session);
 }
 
 int run(const Words& words) {
@@ -87,10 +143,9 @@ int run(const Words& words) {
   return run_verb(*verb, Words(words.begin() + 1, words.end()));
 }
 
+/// For what goes wrong around the run of a verb.
 int fail(const Error& error, const Words& words) {
-  const std::string place = error.place().empty() ? "" : error.place() + ": ";
-  fmt::print(stderr, "fovea: error: {}\n", printable(place + error.message()));
-  if (!error.hint().empty()) fmt::print(stderr, "hint: {}\n", printable(error.hint()));
+  tell(error);
   const int code = exit_code(error.kind());
   if (has(words, "--json")) {
     Json json = report_head(words.front().rfind("-", 0) == 0 ? "" : words.front());
@@ -110,13 +165,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   try {
     return cli::run(words);
-  } catch (const Error& error) {
-    return cli::fail(error, words);
-  } catch (const std::bad_alloc&) {
-    return cli::fail(Error(ErrorKind::limit, "out of memory", {}, "the model is too large for this machine"),
-                     words);
-  } catch (const std::exception& error) {
-    return cli::fail(
-        Error(ErrorKind::internal, error.what(), {}, "this is a fault of Fovea: please report it"), words);
+  } catch (...) {
+    return cli::fail(cli::caught(), words);
   }
 }

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "field_source.h"
 #include "fovea/io/image_file.h"
-#include "fovea/io/read.h"
+#include "input.h"
 #include "report.h"
+#include "shared_options.h"
 #include "sheet.h"
 #include "text.h"
 #include "verb.h"
@@ -36,39 +38,42 @@ class Render : public Verb {
   }
 
   void declare(Arguments& arguments) override {
-    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add(model_argument(input_));
     arguments.add("Views", describe(view_options_));
-    arguments.add(
-        "Views",
-        {{"view", "Draw this view of the set alone, counted from 1; 0 draws all.", &view_, "", 0, 4096},
-         {"columns", "Views side by side in a sheet; 0 makes it about square.", &columns_, "", 0, 4096}});
-    arguments.add("Picture", describe(options_));
-    arguments.add(
-        "Picture",
-        {{"background", "Colour behind the model, as #RRGGBB.", &background_, "colour"},
-         {"field",
-          "Numbers per vertex for --pass field or region: a .npy or .csv file, or the name of a vertex "
-          "attribute such as _IMPORTANCE.",
-          &field_, "file or name"}});
+    arguments.add("Views", {{"view", "Draw this view of the set alone, counted from 1; 0 draws all.", &view_,
+                             "", 0, 4096},
+                            describe_columns(columns_)});
+    arguments.add("Picture", {describe_view_size(size_)});
+    OptionList picture = describe(options_);
+    for (Option& option : picture) {
+      if (option.name != "width" && option.name != "height") continue;
+      option.value = option.name == "width" ? &width_ : &height_;
+      option.help.insert(option.help.size() - 1, ", instead of --view-size");
+    }
+    arguments.add("Picture", picture);
+    arguments.add("Picture",
+                  {{"background", "Colour behind the model, as #RRGGBB.", &background_, "colour"},
+                   describe_field("field", "Numbers per vertex for --pass field or region", field_)});
     arguments.add("Picture", describe(pose_options_));
     arguments.add("Output", {describe_output(output_), describe_force(force_)});
     arguments.add("Limits", describe(read_options_));
+    need_views(arguments, view_options_);
+    arguments.need({{"field"}, "--pass field or region", [&] { return shows_field(); }});
   }
 
   int run(Session& session) override {
     check_request();
-    const Model model =
-        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
+    const Input input = read_input(session, input_, read_options_);
+    session.report["inputs"] = inputs_json({&input, 1});
+    need_triangles(input);
     std::vector<VertexField> fields;
-    if (!field_.empty()) fields = session.phase("field", [&] { return load_range(model, session); });
-    const Pose pose = pose_of(model, pose_options_);
-    const RenderScene scene =
-        session.phase("prepare", [&] { return make_render_scene(model, pose, session.context); });
-    const std::vector<View> views = chosen_views(model, pose, scene);
-    Image8 sheet = empty_sheet(views.size(), columns_, options_);
-    const std::vector<Picture> pictures =
-        session.phase("draw", [&] { return render_views(scene, views, options_, session.context, fields); });
-    arrange(pictures, sheet);
+    if (!field_.empty()) fields = session.phase("field", [&] { return load_range(input, session); });
+    const Pose pose = about(input_, [&] { return pose_of(input.model, pose_options_); });
+    const RenderScene scene = session.phase(
+        "prepare", input_, [&] { return make_render_scene(input.model, pose, session.context); });
+    const std::vector<View> views = about(input_, [&] { return chosen_views(input.model, pose, scene); });
+    const Image8 sheet = session.phase(
+        "draw", [&] { return draw_sheet(scene, views, columns_, options_, session.context, fields); });
     session.phase("write", [&] { write_image(sheet, output_, force_); });
     tell(session, scene, views, sheet);
     return 0;
@@ -77,11 +82,13 @@ class Render : public Verb {
  private:
   void check_request() {
     check_input(input_);
-    check_output(output_, {input_}, force_, check_image_output);
-    if (shows_field() != !field_.empty()) {
-      throw Error(ErrorKind::usage, "--pass field (or region) and --field go together", {},
-                  "--field names the numbers that --pass field shows");
-    }
+    check_output(output_, "picture.png", {input_}, force_,
+                 [&](const auto& path) { check_image_output(path, force_); });
+    if (shows_field() && field_.empty())
+      throw Error(ErrorKind::usage, "--pass field and region need --field", {},
+                  "it names the numbers to show");
+    options_.width = width_.value_or(size_);
+    options_.height = height_.value_or(size_);
     check(pose_options_);
     options_.background = parse_color(background_);
   }
@@ -102,8 +109,8 @@ class Render : public Verb {
   }
 
   /// The fields; for heat scaled to [0, 1] over all meshes, what is not a number is 0.
-  std::vector<VertexField> load_range(const Model& model, Session& session) {
-    std::vector<VertexField> fields = load_fields(field_, "--field", model, read_options_);
+  std::vector<VertexField> load_range(const Input& input, Session& session) {
+    std::vector<VertexField> fields = load_fields(field_, input, read_options_).fields;
     float low = std::numeric_limits<float>::infinity(), high = -low;
     for (const VertexField& field : fields) {
       for (const float x : field.values()) {
@@ -124,7 +131,9 @@ class Render : public Verb {
     std::vector<View> views = views_of(view_options_, model, pose, scene.sphere);
     if (view_ == 0) return views;
     if (static_cast<std::size_t>(view_) > views.size()) {
-      throw Error(ErrorKind::usage, fmt::format("there are only {} views", views.size()), "--view");
+      const bool own = view_options_.set == ViewSet::cameras;
+      throw Error(own ? ErrorKind::unsupported : ErrorKind::usage,
+                  fmt::format("there are only {} views", views.size()), "--view");
     }
     return {views[static_cast<std::size_t>(view_ - 1)]};
   }
@@ -137,13 +146,14 @@ class Render : public Verb {
                       {"eye", {view.eye.x, view.eye.y, view.eye.z}},
                       {"toward", {-view.back.x, -view.back.y, -view.back.z}}});
     }
-    session.report["outputs"] =
-        Json::array({{{"path", output_}, {"width", sheet.width}, {"height", sheet.height}}});
+    Json output = file_json(output_);
+    output.update({{"width", sheet.width}, {"height", sheet.height}});
+    session.report["outputs"] = Json::array({output});
     session.report["triangles_drawn"] = scene.triangle_count;
-    session.print_summary(fmt::format("{}: {} of {}, {} x {} pixels, {}\n", printable(output_),
-                                      plural(views.size(), "view", "views"),
+    session.print_summary(fmt::format("{} -> {}\n{} of {}, {} x {} pixels\n{}\n", printable(input_),
+                                      printable(output_), plural(views.size(), "view", "views"),
                                       plural(scene.triangle_count, "triangle", "triangles"), sheet.width,
-                                      sheet.height, seconds_text(session.seconds())));
+                                      sheet.height, session.spent_text()));
   }
 
   std::string input_;
@@ -152,6 +162,8 @@ class Render : public Verb {
   std::string background_ = "#808080";
   std::int64_t view_ = 0;
   std::int64_t columns_ = 0;
+  std::int64_t size_ = 512;
+  std::optional<std::int64_t> width_, height_;
   bool force_ = false;
   PoseOptions pose_options_;
   ViewOptions view_options_;

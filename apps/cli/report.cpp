@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
+#include "fovea/base/text.h"
 #include "text.h"
 
 namespace fovea::cli {
@@ -72,11 +75,17 @@ Json to_json(const Snapshot& s) {
           {"vertices", s.counts.vertices},
           {"split_vertices", s.counts.split_vertices},
           {"parts", s.parts},
-          {"bytes", to_json(s.bytes)}};
+          {"bytes_by_kind", to_json(s.bytes)}};
 }
 
 Json file_json(const std::string& path, const FileBytes& bytes) {
   return {{"path", path}, {"format", to_string(bytes.format)}, {"bytes", bytes.files}};
+}
+
+Json file_json(const std::string& path) {
+  std::error_code ignored;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, ignored);
+  return {{"path", path}, {"format", lower_extension(path).substr(1)}, {"bytes", ignored ? 0 : bytes}};
 }
 
 std::string comparison_text(const Snapshot& before, const Snapshot& after) {

@@ -13,7 +13,7 @@
 namespace fovea::cli {
 
 /// Version of the JSON report: goes up when a key changes its meaning or goes.
-inline constexpr int kReportSchema = 1;
+inline constexpr int kReportSchema = 2;
 
 /// What every report begins with: schema version, tool, verb.
 Json report_head(const std::string& verb);
@@ -30,8 +30,9 @@ struct Snapshot {
 };
 Snapshot snapshot(const Model& model, const FileBytes& bytes);
 Json to_json(const Snapshot& snapshot);
-/// {"path", "format", "bytes"} for "inputs" and "outputs".
+/// {"path", "format", "bytes"} for "inputs" and "outputs": of a model, and of any other file.
 Json file_json(const std::string& path, const FileBytes& bytes);
+Json file_json(const std::string& path);
 /// Table of what was and what is: triangles, vertices, bytes by kind.
 std::string comparison_text(const Snapshot& before, const Snapshot& after);
 

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <limits>
 
+#include "fovea/base/text.h"
 #include "fovea/io/field_file.h"
 #include "fovea/io/image_file.h"
-#include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "fovea/render/heat_map.h"
 #include "fovea/render/render.h"
@@ -17,7 +16,9 @@
 #include "fovea/surface/curvature.h"
 #include "fovea/surface/scene_surface.h"
 #include "fovea/surface/statistics.h"
+#include "input.h"
 #include "report.h"
+#include "shared_options.h"
 #include "sheet.h"
 #include "text.h"
 #include "verb.h"
@@ -69,30 +70,32 @@ class Saliency : public Verb {
           &map_, "name"},
          describe_force(force_)});
     arguments.add("Picture", describe(view_options_));
-    arguments.add("Picture", {{"size", "Pixels along each side of a view.", &size_, "pixels", 16, 8192},
-                              {"columns", "Views side by side; 0 makes the sheet about square.", &columns_,
-                               "", 0, 4096}});
+    arguments.add("Picture", {describe_view_size(size_), describe_columns(columns_)});
     arguments.add("Limits", describe(read_options_));
+    need_views(arguments, view_options_);
+    arguments.need({{"views", "view-count", "elevation", "fov", "margin", "view-size", "columns"},
+                    "a picture as output",
+                    [&] { return output_.empty() || kind() == OutputKind::picture; },
+                    "name it .png, .jpg or .webp"});
   }
 
   int run(Session& session) override {
     check_request();
-    const Model model =
-        session.phase("read", [&] { return read_model(inputs_[0], read_options_, session.context); });
-    const std::vector<Model> poses =
-        session.phase("poses", [&] { return read_poses(model, session.context); });
-    report_inputs(model, poses, session);
-    if (kind_ == OutputKind::texture) images_ = texture_space_images(model);
+    const Input first = read_first(session);
+    const Model& model = first.model;
+    const std::vector<Model> poses = read_poses(model, session);
+    if (kind_ == OutputKind::texture)
+      images_ = about(first.path, [&] { return texture_space_images(model); });
     check_outputs(kWhole);
-    ModelSaliency found =
-        session.phase("saliency", [&] { return model_saliency(model, options_, session.context, poses); });
+    ModelSaliency found = session.phase(
+        "saliency", first.path, [&] { return model_saliency(model, options_, session.context, poses); });
     found.maps.push_back({kWhole, found.saliency});
     const Json statistics =
-        session.phase("statistics", [&] { return statistics_json(model, found, session); });
+        session.phase("statistics", first.path, [&] { return statistics_json(model, found, session); });
     const std::vector<const SaliencyMap*> maps = chosen(found);
     for (const SaliencyMap* map : maps) check_outputs(map->name);
     session.report["outputs"] = Json::array();
-    session.phase("write", [&] {
+    session.phase("write", first.path, [&] {
       for (const SaliencyMap* map : maps) write(model, *map, session);
     });
     tell(session, found, statistics);
@@ -102,21 +105,18 @@ class Saliency : public Verb {
  private:
   void check_request() {
     for (const std::string& input : inputs_) check_input(input);
-    if (kind_ == OutputKind::by_extension) kind_ = kind_by_extension();
+    kind_ = kind();
     // Of several textures each gets a name of its own.
-    check_output(output_, inputs_, force_ || kind_ == OutputKind::texture, output_check());
+    check_place_of(output_, force_ || kind_ == OutputKind::texture);
+  }
+
+  void check_place_of(const std::string& output, bool force) const {
+    check_output(output, "heat.glb", inputs_, force, [&](const auto& path) { output_check()(path, force); });
   }
 
   /// Before anything is written: what stands in the way of any file of a map.
   void check_outputs(const std::string& map) const {
-    for (const std::string& path : paths_of(map)) check_output(path, inputs_, force_, output_check());
-  }
-
-  static std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
+    for (const std::string& path : paths_of(map)) check_place_of(path, force_);
   }
 
   static void check_attribute_output(const std::filesystem::path& path, bool force) {
@@ -127,7 +127,8 @@ class Saliency : public Verb {
     fovea::check_output(path, force);
   }
 
-  OutputKind kind_by_extension() const {
+  OutputKind kind() const {
+    if (kind_ != OutputKind::by_extension) return kind_;
     const std::string extension = lower_extension(output_);
     const auto is = [&](std::initializer_list<const char*> names) {
       return std::find(names.begin(), names.end(), extension) != names.end();
@@ -146,23 +147,22 @@ class Saliency : public Verb {
     }
   }
 
-  std::vector<Model> read_poses(const Model& first, Context& context) const {
-    std::vector<Model> poses;
-    for (std::size_t i = 1; i < inputs_.size(); ++i) {
-      poses.push_back(read_model(inputs_[i], read_options_, context));
-      try {
-        surfaces_in(first, poses.back());
-      } catch (const Error& error) {
-        throw error.within(inputs_[i]);
-      }
-    }
-    return poses;
+  Input read_first(Session& session) const {
+    Input first = read_input(session, inputs_[0], read_options_);
+    session.report["inputs"] = inputs_json({&first, 1});
+    need_triangles(first);
+    return first;
   }
 
-  void report_inputs(const Model& model, const std::vector<Model>& poses, Session& session) const {
-    Json& json = session.report["inputs"] = Json::array();
-    for (std::size_t i = 0; i < inputs_.size(); ++i)
-      json.push_back(file_json(inputs_[i], measure_input(inputs_[i], i == 0 ? model : poses[i - 1])));
+  std::vector<Model> read_poses(const Model& first, Session& session) const {
+    std::vector<Model> poses;
+    for (std::size_t i = 1; i < inputs_.size(); ++i) {
+      Input pose = read_input(session, inputs_[i], read_options_);
+      session.report["inputs"].push_back(file_json(pose.path, pose.bytes));
+      about(pose.path, [&] { surfaces_in(first, pose.model); });
+      poses.push_back(std::move(pose.model));
+    }
+    return poses;
   }
 
   std::vector<const SaliencyMap*> chosen(const ModelSaliency& found) const {
@@ -173,8 +173,11 @@ class Saliency : public Verb {
       if (map_ == kAll || map_ == map.name) maps.push_back(&map);
     }
     if (maps.empty()) {
+      const std::vector<std::string> near = nearest_names(map_, names);
       throw Error(ErrorKind::usage, fmt::format("there is no map \"{}\"", printable(map_)), "--map",
-                  fmt::format("there are: {}, {}", kAll, fmt::join(names, ", ")));
+                  fmt::format("{}there are: {}, {}",
+                              near.empty() ? "" : fmt::format("did you mean {}? ", near.front()), kAll,
+                              fmt::join(names, ", ")));
     }
     return maps;
   }
@@ -195,8 +198,6 @@ class Saliency : public Verb {
 
   void write(const Model& model, const SaliencyMap& map, Session& session) const {
     const std::vector<std::string> paths = paths_of(map.name);
-    WriteOptions options;
-    options.force = force_;
     switch (kind_) {
       case OutputKind::field:
         write_field(paths[0], field_in_source_order(model, map.fields), map.name, force_);
@@ -209,13 +210,22 @@ class Saliency : public Verb {
         }
         break;
       case OutputKind::attribute:
-        write_model(with_attribute(model, map.fields, attribute_name(map.name)), paths[0], options,
-                    session.context);
-        break;
-      default: write_model(heat_map(model, scaled(map.fields)), paths[0], options, session.context);
+        return write(with_attribute(model, map.fields, attribute_name(map.name)), paths[0], map, session);
+      default: return write(heat_map(model, scaled(map.fields)), paths[0], map, session);
     }
-    for (const std::string& path : paths)
-      session.report["outputs"].push_back({{"path", path}, {"map", map.name}});
+    for (const std::string& path : paths) report_output(file_json(path), map, session);
+  }
+
+  void write(const Model& made, const std::string& path, const SaliencyMap& map, Session& session) const {
+    WriteOptions options;
+    options.force = force_;
+    const auto files = write_model(made, path, options, session.context);
+    report_output(file_json(path, measure_output(files, made)), map, session);
+  }
+
+  static void report_output(Json output, const SaliencyMap& map, Session& session) {
+    output["map"] = map.name;
+    session.report["outputs"].push_back(std::move(output));
   }
 
   /// "_SALIENCY", "_CURVATURE_CONTRAST_1".
@@ -249,9 +259,7 @@ class Saliency : public Verb {
     const Pose pose = pose_of(heat, options_.pose);
     const RenderScene scene = make_render_scene(heat, pose, context);
     const std::vector<View> views = views_of(view_options_, heat, pose, scene.sphere);
-    Image8 sheet = empty_sheet(views.size(), columns_, options);
-    arrange(render_views(scene, views, options, context, fields), sheet);
-    return sheet;
+    return draw_sheet(scene, views, columns_, options, context, fields);
   }
 
   Json statistics_json(const Model& model, const ModelSaliency& found, Session& session) const {
@@ -286,11 +294,11 @@ class Saliency : public Verb {
       table.row({name, number_text(s["mean"]), number_text(s["deviation"]), number_text(s["median"]),
                  number_text(s["min"]) + " … " + number_text(s["max"])});
     }
-    session.print_summary(fmt::format("{} -> {}\n{}{}, {}, peak memory {}\n", printable(inputs_[0]),
+    session.print_summary(fmt::format("{} -> {}\n{}{}\n{}\n", printable(inputs_[0]),
                                       written.size() == 1 ? printable(written[0]["path"].get<std::string>())
                                                           : plural(written.size(), "file", "files"),
                                       table.text(0), plural(found.poses.size(), "pose", "poses"),
-                                      seconds_text(session.seconds()), bytes_text(peak_memory_bytes())));
+                                      session.spent_text()));
   }
 
   static ViewOptions montage_views() {

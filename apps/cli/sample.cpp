@@ -1,7 +1,10 @@
 #include "fovea/sample/sample.h"
 
+#include <fmt/format.h>
+
 #include "fovea/io/write.h"
 #include "report.h"
+#include "shared_options.h"
 #include "text.h"
 #include "verb.h"
 
@@ -27,6 +30,8 @@ class Sample : public Verb {
                              {"detail", "Scales the number of triangles.", &detail_, "times", 0.001, 1000}});
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
+    need_format(arguments, write_options_);
+    arguments.need({{"detail", "output"}, "a NAME to make", [&] { return !list_; }});
   }
 
   int run(Session& session) override {
@@ -53,7 +58,8 @@ class Sample : public Verb {
     if (name_.empty()) {
       throw Error(ErrorKind::usage, "NAME is missing", {}, "fovea sample --list shows the names");
     }
-    check_output(output_, {}, write_options_.force);
+    check_output(output_, name_ + ".glb", {}, write_options_.force,
+                 [&](const auto& path) { fovea::check_output(path, write_options_); });
     const Model model = session.phase("make", [&] { return make_sample(name_, detail_, session.context); });
     const auto files =
         session.phase("write", [&] { return write_model(model, output_, write_options_, session.context); });
@@ -61,9 +67,10 @@ class Sample : public Verb {
     const Snapshot made = snapshot(model, measure_output(files, model));
     session.report["outputs"] = Json::array({file_json(output_, made.bytes)});
     session.report["after"] = to_json(made);
-    session.print_summary(output_ + ": " + plural(made.counts.triangles, "triangle", "triangles") + ", " +
-                          plural(made.counts.vertices, "vertex", "vertices") + ", " +
-                          bytes_text(made.bytes.files) + "\n");
+    session.print_summary(fmt::format("{} -> {}\n{}, {}, {}\n{}\n", printable(name_), printable(output_),
+                                      plural(made.counts.triangles, "triangle", "triangles"),
+                                      plural(made.counts.vertices, "vertex", "vertices"),
+                                      bytes_text(made.bytes.files), session.spent_text()));
   }
 
   std::string name_;

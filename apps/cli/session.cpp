@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <system_error>
 
-#include "fovea/io/write.h"
 #include "report.h"
 #include "text.h"
 
@@ -22,18 +21,6 @@ OptionList describe(CommonOptions& o) {
       {"quiet", "Print only errors, and data that was asked for.", &o.quiet, ""},
       {"verbose", "Tell each phase with its time and memory; list everything.", &o.verbose, ""},
   };
-}
-
-Option describe_output(std::string& path) {
-  return {"output", "File to write; its extension picks the format.", &path, "output"};
-}
-
-Option describe_force(bool& force) {
-  WriteOptions model;
-  for (Option& option : describe(model)) {
-    if (option.name == "force") return {option.name, option.help, &force, option.unit};
-  }
-  throw Error(ErrorKind::internal, "models are written without --force");
 }
 
 Session::Session(const CommonOptions& common) : common_(common), progress_(!common.quiet) {
@@ -64,6 +51,10 @@ void Session::say(const std::string& line) {
 
 double Session::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+std::string Session::spent_text() const {
+  return fmt::format("{}, peak memory {}", seconds_text(seconds()), bytes_text(peak_memory_bytes()));
 }
 
 Session::PhaseTimer::PhaseTimer(Session& session, const std::string& name)
@@ -120,10 +111,11 @@ std::uint64_t peak_memory_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB.
 }
 
-void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force,
-                  void (*check)(const std::filesystem::path&, bool)) {
+void check_output(const std::string& output, const std::string& example,
+                  const std::vector<std::string>& inputs, bool force,
+                  const std::function<void(const fs::path&)>& check) {
   if (output.empty()) {
-    throw Error(ErrorKind::usage, "no output is named", {}, "add: -o OUTPUT, for example -o small.glb");
+    throw Error(ErrorKind::usage, "no output is named", {}, "add: -o OUTPUT, for example -o " + example);
   }
   if (output == "-") {
     throw Error(ErrorKind::usage, "standard output is not supported", "-o -",
@@ -136,7 +128,7 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
                   "--force replaces the original; there is no way back");
     }
   }
-  check(output, force);
+  check(output);
 }
 
 void check_input(const std::string& input) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -11,7 +12,6 @@
 #include "fovea/base/context.h"
 #include "fovea/base/error.h"
 #include "fovea/base/options.h"
-#include "fovea/io/write.h"
 #include "progress.h"
 
 namespace fovea::cli {
@@ -29,11 +29,17 @@ struct CommonOptions {
 };
 OptionList describe(CommonOptions& options);
 
-/// The option of every verb that writes a file.
-Option describe_output(std::string& path);
-
-/// The option of verbs that write something else than a model.
-Option describe_force(bool& force);
+/// Runs `work` on what was read from `path`: an Error about the data gets the path before its place.
+template <class Work>
+auto about(const std::string& path, Work&& work) {
+  try {
+    return std::forward<Work>(work)();
+  } catch (const Error& error) {
+    const ErrorKind kind = error.kind();
+    if (kind != ErrorKind::format && kind != ErrorKind::unsupported && kind != ErrorKind::limit) throw;
+    throw error.within(path);
+  }
+}
 
 /// One run of a verb: the library's context, what is printed where, and the report for --json.
 ///
@@ -53,6 +59,11 @@ class Session {
     const PhaseTimer timer(*this, name);
     return std::forward<Work>(work)();
   }
+  /// The same `about` what was read from `path`.
+  template <class Work>
+  auto phase(const std::string& name, const std::string& path, Work&& work) {
+    return phase(name, [&] { return about(path, std::forward<Work>(work)); });
+  }
 
   bool json() const { return common_.json; }
   bool verbose() const { return common_.verbose; }
@@ -64,6 +75,8 @@ class Session {
   void say(const std::string& line);
 
   double seconds() const;
+  /// "0.42 s, peak memory 37.4 MB".
+  std::string spent_text() const;
   /// Tells the diagnostics, and with --json prints the report with diagnostics, times, memory and
   /// exit code. Throws Error(output) if stdout cannot be written.
   void finish(int exit_code);
@@ -99,10 +112,11 @@ class Session {
 /// Largest resident memory of this process so far.
 std::uint64_t peak_memory_bytes();
 
-/// Checks an output path before any work is spent on it: Error(usage) for none, for "-" and for a path
-/// that is an input without `force`, then all that `check` does: that of models, or that of pictures.
-void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force,
-                  void (*check)(const std::filesystem::path&, bool) = fovea::check_output);
+/// Checks an output path before any work is spent on it: Error(usage) for none, with an example, for "-" and
+/// for a path that is an input without `force`, then all that `check` does.
+void check_output(const std::string& output, const std::string& example,
+                  const std::vector<std::string>& inputs, bool force,
+                  const std::function<void(const std::filesystem::path&)>& check);
 
 /// An input path as given; Error(usage) for "-", Error(input) if it is missing or a folder.
 void check_input(const std::string& input);

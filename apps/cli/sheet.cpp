@@ -14,8 +14,7 @@ namespace {
 /// Along a side of a sheet: what common viewers still open.
 constexpr std::int64_t kMostPixels = 1 << 16;
 
-}  // namespace
-
+/// In the background's colour.
 Image8 empty_sheet(std::size_t views, std::int64_t columns, const RenderOptions& options) {
   const auto count = static_cast<std::int64_t>(views);
   const auto square = static_cast<std::int64_t>(std::ceil(std::sqrt(1.5 * static_cast<double>(count))));
@@ -31,15 +30,28 @@ Image8 empty_sheet(std::size_t views, std::int64_t columns, const RenderOptions&
   return sheet;
 }
 
-void arrange(std::span<const Picture> pictures, Image8& sheet) {
-  for (std::size_t k = 0; k < pictures.size(); ++k) {
-    const Image8& picture = pictures[k].color;
-    const int columns = sheet.width / picture.width, at = static_cast<int>(k);
-    for (int y = 0; y < picture.height; ++y) {
-      std::copy_n(picture.at(0, y), 3 * picture.width,
-                  sheet.at(at % columns * picture.width, at / columns * picture.height + y));
-    }
+/// Puts a picture at a place of the sheet, counted row by row.
+void put(const Image8& picture, std::size_t place, Image8& sheet) {
+  const int columns = sheet.width / picture.width, at = static_cast<int>(place);
+  for (int y = 0; y < picture.height; ++y) {
+    std::copy_n(picture.at(0, y), 3 * picture.width,
+                sheet.at(at % columns * picture.width, at / columns * picture.height + y));
   }
+}
+
+}  // namespace
+
+Image8 draw_sheet(const RenderScene& scene, std::span<const View> views, std::int64_t columns,
+                  const RenderOptions& options, Context& context, std::span<const VertexField> fields) {
+  Image8 sheet = empty_sheet(views.size(), columns, options);
+  const auto at_once = static_cast<std::size_t>(context.thread_count());
+  for (std::size_t i = 0; i < views.size(); i += at_once) {
+    context.advance_or_throw("draw", static_cast<double>(i) / static_cast<double>(views.size()));
+    const std::span<const View> next = views.subspan(i, std::min(at_once, views.size() - i));
+    const std::vector<Picture> pictures = render_views(scene, next, options, context, fields);
+    for (std::size_t k = 0; k < pictures.size(); ++k) put(pictures[k].color, i + k, sheet);
+  }
+  return sheet;
 }
 
 }  // namespace fovea::cli

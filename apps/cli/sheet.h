@@ -3,16 +3,15 @@
 #include <cstdint>
 #include <span>
 
+#include "fovea/base/context.h"
 #include "fovea/model/image.h"
 #include "fovea/render/render.h"
 
 namespace fovea::cli {
 
-/// Room for a sheet of views side by side, in the background's colour; about square if `columns` is 0. Throws
-/// Error(usage) if it would be larger than common viewers open.
-Image8 empty_sheet(std::size_t views, std::int64_t columns, const RenderOptions& options);
-
-/// Puts the pictures on the sheet, row by row.
-void arrange(std::span<const Picture> pictures, Image8& sheet);
+/// Draws views side by side, row by row; about square if `columns` is 0. Tells its progress; can be cancelled
+/// between views. Throws Error(usage) if the sheet would be larger than common viewers open.
+Image8 draw_sheet(const RenderScene& scene, std::span<const View> views, std::int64_t columns,
+                  const RenderOptions& options, Context& context, std::span<const VertexField> fields);
 
 }  // namespace fovea::cli

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include "field_source.h"
-#include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/auto_saliency.h"
 #include "fovea/simplify/salient.h"
+#include "input.h"
 #include "report.h"
+#include "shared_options.h"
 #include "simplify_text.h"
 #include "text.h"
 #include "verb.h"
@@ -45,7 +46,7 @@ class Simplify : public Verb {
   }
 
   void declare(Arguments& arguments) override {
-    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add(model_argument(input_));
     OptionList options = describe(options_);
     const auto metric =
         std::find_if(options.begin(), options.end(), [](const Option& o) { return o.name == "metric"; });
@@ -54,44 +55,44 @@ class Simplify : public Verb {
     arguments.add("Simplification", options);
     arguments.add(
         "Simplification",
-        {{"importance",
-          "How much each vertex matters (1 is neutral, more keeps): a .npy or .csv file, or the name of a "
-          "vertex attribute such as _IMPORTANCE or COLOR_0.",
-          &importance_, "file or name"},
+        {describe_field("importance", "How much each vertex matters (1 is neutral, more keeps)", importance_),
          {"allow-miss", "Exit with 0 even if the target is not reached.", &allow_miss_, ""}});
+    OptionList saliency = describe(saliency_options_);
     arguments.add(
         "Saliency",
         {{"saliency",
           "Spend triangles where people look: by a preset of \"fovea saliency\", or by what measures "
           "best on pictures of this model (auto, which takes several times as long and is meant if no "
           "name is given). None by default: over many models no fixed preset measured clearly better.",
-          choice(saliency_, {"none", "auto", "fovea", "yang", "lee", "munaretti"}, "auto"), ""}});
+          choice(saliency_, saliency_sources(saliency), "auto"), ""}});
     arguments.add("Saliency", describe(salient_options_));
-    OptionList saliency = describe(saliency_options_);
     std::erase_if(saliency, [](const Option& o) { return o.name != "key-poses" && o.name != "up"; });
     arguments.add("Saliency", saliency);
     arguments.add("Views", views);
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
+    declare_needs(arguments);
     arguments.add_hint("ratio", "a ratio is a fraction: 0.1 keeps 10 %");
     arguments.add_hint("error", "an error is a fraction of the diagonal: 0.01 allows 1 %");
   }
 
   int run(Session& session) override {
     check_request();
-    const Model model =
-        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
-    const Snapshot before = snapshot(model, measure_input(input_, model));
+    const Input input = read_input(session, input_, read_options_);
+    const Model& model = input.model;
+    const Snapshot before = snapshot(model, input.bytes);
+    session.report["inputs"] = inputs_json({&input, 1});
+    session.report["before"] = to_json(before);
     Importance importance;
-    if (!importance_.empty()) {
-      importance = session.phase(
-          "importance", [&] { return load_fields(importance_, "--importance", model, read_options_); });
+    if (!importance_.empty())
+      importance = session.phase("importance", [&] { return load_importance(input); });
+    if (saliency_ != SaliencySource::none && before.counts.triangles > 0) {
+      importance =
+          session.phase("saliency", input_, [&] { return with_saliency(model, importance, session); });
     }
-    if (saliency_ != SaliencySource::none)
-      importance = session.phase("saliency", [&] { return with_saliency(model, importance, session); });
-    const SimplifyResult result =
-        session.phase("simplify", [&] { return simplify(model, options_, importance, session.context); });
+    const SimplifyResult result = session.phase(
+        "simplify", input_, [&] { return simplify(model, options_, importance, session.context); });
     const auto files = session.phase(
         "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
     const Snapshot after = snapshot(result.model, measure_output(files, result.model));
@@ -99,19 +100,57 @@ class Simplify : public Verb {
   }
 
  private:
+  /// "none", "auto" and the presets.
+  static std::vector<std::string> saliency_sources(const OptionList& saliency) {
+    std::vector<std::string> names{"none", "auto"};
+    for (const Option& option : saliency) {
+      if (option.name != "preset") continue;
+      const std::vector<std::string>& presets = std::get<Option::Choice>(option.value).names;
+      names.insert(names.end(), presets.begin(), presets.end());
+    }
+    return names;
+  }
+
+  void declare_needs(Arguments& arguments) const {
+    const auto is = [this](std::initializer_list<Metric> metrics) {
+      return std::find(metrics.begin(), metrics.end(), options_.metric) != metrics.end();
+    };
+    need_format(arguments, write_options_);
+    need_views(arguments, options_.views);
+    arguments.need({{"metric-from"}, "--metric image, entropy or polygon-entropy", [is] {
+                      return !is({Metric::quadric, Metric::visibility});
+                    }});
+    arguments.need({{"image-pass"}, "--metric image", [is] {
+                      return is({Metric::automatic, Metric::image});
+                    }});
+    arguments.need({{"view-size"}, "a --metric by views", [is] { return !is({Metric::quadric}); }});
+    arguments.need({{"views", "fov", "margin"}, "a --metric by views, or --cull-hidden", [this, is] {
+                      return options_.cull_hidden || !is({Metric::quadric});
+                    }});
+    arguments.need({{"region-sigma", "region-k", "region-min-size", "region-texels"},
+                    "--metric entropy",
+                    [is] { return is({Metric::entropy}); }});
+    arguments.need({{"key-poses", "up"}, "--saliency", [this] { return saliency_ != SaliencySource::none; }});
+    arguments.need({{"saliency-weighting", "saliency-strength"},
+                    "a preset of --saliency",
+                    [this] { return saliency_ > SaliencySource::chosen; },
+                    "name one, for example --saliency yang; auto finds the strength itself"});
+  }
+
   void check_request() const {
     if (!options_.triangles && !options_.ratio && !options_.error && !options_.error_abs) {
       throw Error(ErrorKind::usage, "no target is given", {},
                   "give --ratio, --triangles, --error or --error-abs, for example --ratio 0.1 to keep 10 %");
     }
-    const bool weighted =
-        salient_options_.weighting != SaliencyWeighting::yang || salient_options_.strength != 1;
-    if (weighted && (saliency_ == SaliencySource::none || saliency_ == SaliencySource::chosen)) {
-      throw Error(ErrorKind::usage, "--saliency-weighting and --saliency-strength need a preset",
-                  "--saliency", "name one, for example --saliency yang; auto finds the strength itself");
-    }
     check_input(input_);
-    check_output(output_, {input_}, write_options_.force);
+    check_output(output_, "small.glb", {input_}, write_options_.force,
+                 [&](const auto& path) { fovea::check_output(path, write_options_); });
+  }
+
+  Importance load_importance(const Input& input) const {
+    NamedFields found = load_fields(importance_, input, read_options_);
+    about(found.path, [&] { check(found.fields); });
+    return std::move(found.fields);
   }
 
   Importance with_saliency(const Model& model, const Importance& importance, Session& session) {
@@ -139,15 +178,12 @@ class Simplify : public Verb {
   int tell(Session& session, const Snapshot& before, const Snapshot& after,
            const SimplifyResult& result) const {
     const bool reached = reached_target(result, options_);
-    session.report["inputs"] = Json::array({file_json(input_, before.bytes)});
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
-    session.report["before"] = to_json(before);
     session.report["after"] = to_json(after);
-    session.report["result"] = result_json(result, reached);
-    session.print_summary(fmt::format("{} -> {}\n{}{}{}time     {}, peak memory {}\n", printable(input_),
-                                      printable(output_), comparison_text(before, after),
-                                      result_text(result, options_), chosen_, seconds_text(session.seconds()),
-                                      bytes_text(peak_memory_bytes())));
+    session.report["result"] = result_json(result, options_, reached);
+    session.print_summary(fmt::format("{} -> {}\n{}{}{}time     {}\n", printable(input_), printable(output_),
+                                      comparison_text(before, after), result_text(result, options_), chosen_,
+                                      session.spent_text()));
     if (reached) return 0;
     if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");
     return allow_miss_ ? 0 : kTargetMissed;

@@ -9,6 +9,8 @@ namespace fovea::cli {
 
 namespace {
 
+bool asks_for_count(const SimplifyOptions& options) { return options.triangles || options.ratio; }
+
 std::string stop_text(const SimplifyResult& result, bool reached) {
   switch (result.stop) {
     case StopReason::target:
@@ -53,26 +55,26 @@ std::string blocked_text(const BlockCounts& blocked, const SimplifyOptions& opti
 }  // namespace
 
 bool reached_target(const SimplifyResult& result, const SimplifyOptions& options) {
-  const bool count_asked = options.triangles.has_value() || options.ratio.has_value();
-  if (result.stop != StopReason::stuck || !count_asked) return result.stop != StopReason::cancelled;
+  if (result.stop != StopReason::stuck || !asks_for_count(options))
+    return result.stop != StopReason::cancelled;
   return result.triangles_after <= result.triangles_target;
 }
 
-Json result_json(const SimplifyResult& result, bool reached) {
+Json result_json(const SimplifyResult& result, const SimplifyOptions& options, bool reached) {
   const BlockCounts& b = result.blocked;
-  return {{"triangles_target", result.triangles_target},
+  return {{"triangles_target", asks_for_count(options) ? Json(result.triangles_target) : Json()},
           {"triangles", result.triangles_after},
           {"reached", reached},
           {"stop", to_string(result.stop)},
-          {"error_relative", number_json(result.error_rel)},
-          {"error_absolute", number_json(result.error_abs)},
+          {"error_rel", number_json(result.error_rel)},
+          {"error_abs", number_json(result.error_abs)},
           {"metric", to_string(result.metric)},
-          {"metric_from", result.metric_from},
+          {"metric_from_triangles", result.metric_from},
           {"hidden", result.triangles_hidden},
           {"blocked",
            {{"edges", b.edges},
             {"topology", b.topology},
-            {"flip", b.flip},
+            {"folds", b.flip},
             {"locked", b.locked},
             {"last", b.last}}}};
 }

@@ -12,7 +12,7 @@ namespace fovea::cli {
 bool reached_target(const SimplifyResult& result, const SimplifyOptions& options);
 
 /// "result" of the report: target, reached, stop reason, error, blocked counts.
-Json result_json(const SimplifyResult& result, bool reached);
+Json result_json(const SimplifyResult& result, const SimplifyOptions& options, bool reached);
 
 /// What became of it, for people: error, stop reason, and when stuck the reasons and the options that would
 /// unblock it.

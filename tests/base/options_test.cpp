@@ -102,14 +102,36 @@ TEST(Options, BadTextNamesOptionTextAndRange) {
 TEST(Options, RejectsWhatIsNotAValueInRange) {
   Sample s;
   OptionList list = s.describe();
-  const std::vector<std::pair<std::string, std::string>> bad{
-      {"flag", "yes"},   {"count", ""},     {"count", "11"},  {"count", "0"},
-      {"count", "1.5"},  {"count", "3x"},   {"count", " 3"},  {"weight", "-1"},
-      {"weight", "nan"}, {"weight", "1,5"}, {"limit", "-1"},  {"ratio", "1.0001"},
-      {"ratio", "none"}, {"color", "blue"}, {"color", "RED"}, {"count", "99999999999999999999"}};
+  const std::vector<std::pair<std::string, std::string>> bad{{"flag", "yes"},
+                                                             {"count", ""},
+                                                             {"count", "11"},
+                                                             {"count", "0"},
+                                                             {"count", "1.5"},
+                                                             {"count", "3x"},
+                                                             {"count", " 3"},
+                                                             {"weight", "-1"},
+                                                             {"weight", "nan"},
+                                                             {"weight", "inf"},
+                                                             {"weight", "1,5"},
+                                                             {"limit", "-1"},
+                                                             {"ratio", "1.0001"},
+                                                             {"ratio", "none"},
+                                                             {"color", "blue"},
+                                                             {"color", "RED"},
+                                                             {"count", "99999999999999999999"}};
   for (const auto& [name, text] : bad) {
     EXPECT_NE(usage_error(list, name, text), "no error") << name << " = '" << text << "'";
   }
+}
+
+TEST(Options, HintsSayWhatIsAllowedAndWhatIsNear) {
+  Sample s;
+  OptionList list = s.describe();
+  EXPECT_EQ(usage_error(list, "count", "1.5"),
+            "--count: '1.5' is not a value for it | allowed: whole numbers 1..10");
+  EXPECT_EQ(usage_error(list, "ratio", "2"), "--ratio: '2' is not a value for it | allowed: 0..1");
+  EXPECT_EQ(usage_error(list, "color", "gren"),
+            "--color: 'gren' is not a value for it | did you mean green? allowed: red|green");
 }
 
 TEST(Options, CheckListsAllFaultsAtOnce) {
@@ -137,6 +159,8 @@ TEST(NearestNames, FindsTypingErrors) {
 
 TEST(NearestNames, NothingWhenNothingIsNear) {
   EXPECT_TRUE(nearest_names("quadric", {"vase", "arm"}).empty());
+  EXPECT_TRUE(nearest_names("arms", {"vase", "terrain"}).empty());
+  EXPECT_TRUE(nearest_names("size", {"views", "time"}).empty());
   EXPECT_TRUE(nearest_names("x", {}).empty());
 }
 

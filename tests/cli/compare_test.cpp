@@ -22,7 +22,10 @@ TEST_F(CompareVerb, ReportsEveryView) {
       fovea({"compare", grid_, small_, grid_, "--views", "cube", "--view-size", "64", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
-  EXPECT_EQ(json["reference"]["triangles"], 1152);
+  ASSERT_EQ(json["inputs"].size(), 3u);
+  EXPECT_EQ(json["inputs"][0]["path"], grid_);
+  EXPECT_EQ(json["inputs"][0]["triangles"], 1152);
+  EXPECT_EQ(json["inputs"][1]["bytes"], std::filesystem::file_size(small_));
   ASSERT_EQ(json["results"].size(), 2u);
   const nlohmann::json &small = json["results"][0], &same = json["results"][1];
   EXPECT_EQ(small["path"], small_);
@@ -40,6 +43,9 @@ TEST_F(CompareVerb, PrintsATable) {
   EXPECT_THAT(outcome.out, HasSubstr("MS-SSIM"));
   EXPECT_THAT(outcome.out, HasSubstr("small.glb"));
   EXPECT_THAT(outcome.out, HasSubstr("4 views"));
+  EXPECT_THAT(outcome.out, HasSubstr("peak memory"));
+  EXPECT_THAT(fovea({"compare", grid_, small_, "--views", "cube", "--view-size", "32", "--quiet"}).out,
+              ::testing::Not(HasSubstr("peak memory")));
 }
 
 TEST_F(CompareVerb, ComparesAcrossFormats) {
@@ -58,6 +64,10 @@ TEST_F(CompareVerb, WritesAPage) {
   EXPECT_THAT(read_text(page), HasSubstr("small.glb"));
   EXPECT_THAT(read_text(page), HasSubstr("</html>"));
   EXPECT_THAT(fovea(words).err, HasSubstr("--force"));
+  EXPECT_EQ(fovea({"compare", grid_, small_, "--views", "tetrahedron", "--view-size", "48", "--report",
+                   folder_ / "PAGE.HTML"})
+                .code,
+            0);
   EXPECT_THAT(fovea({"compare", grid_, small_, "--report", folder_ / "page.txt"}).err, HasSubstr(".html"));
 }
 
@@ -65,8 +75,18 @@ TEST_F(CompareVerb, RefusesWhatItCannotDo) {
   EXPECT_THAT(fovea({"compare", grid_}).err, HasSubstr("MODEL is missing"));
   EXPECT_EQ(fovea({"compare", grid_, folder_ / "no.glb"}).code, 3);
   EXPECT_THAT(fovea({"compare", grid_, small_, "--time", "1"}).err, HasSubstr("--animation"));
-  EXPECT_THAT(fovea({"compare", grid_, small_, "--views", "cameras"}).err, HasSubstr("no cameras"));
+  EXPECT_THAT(fovea({"compare", grid_, small_, "--views", "cameras"}).err,
+              HasSubstr("grid.glb: the model has no cameras"));
   EXPECT_EQ(fovea({"compare", grid_, small_, "--view-size", "5"}).code, 2);
+}
+
+TEST_F(CompareVerb, SaysWhichModelLacksTheAnimation) {
+  const std::string arm = folder_ / "arm.glb";
+  ASSERT_EQ(fovea({"sample", "arm", "-o", arm, "--detail", "0.03"}).code, 0);
+  const Outcome outcome = fovea({"compare", arm, arm, grid_, "--animation", "0"});
+  EXPECT_EQ(outcome.code, 5);
+  EXPECT_EQ(outcome.err, "fovea: error: " + grid_ + ": the model has no animation 0\n" +
+                             "hint: it has none; leave out --animation\n");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include "run_command.h"
+#include "support/gltf_builder.h"
 
 namespace fovea::test {
 namespace {
@@ -38,7 +39,7 @@ TEST(Errors, OverALimitNamesTheOption) {
   const Folder folder;
   const Outcome outcome = fovea({"info", write_grid(folder, "grid.glb"), "--max-elements", "10"});
   EXPECT_EQ(outcome.code, 6);
-  EXPECT_THAT(outcome.err, HasSubstr("max-elements"));
+  EXPECT_THAT(outcome.err, HasSubstr("raise --max-elements"));
 }
 
 TEST(Errors, OutputInNoFolder) {
@@ -75,6 +76,20 @@ TEST(Errors, UnknownOutputFormatIsRefusedBeforeTheWork) {
   const Outcome outcome =
       fovea({"simplify", write_grid(folder, "grid.glb"), "-o", folder / "out.abc", "--ratio", "0.5"});
   EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(folder.names(), ElementsAre("grid.glb"));
+}
+
+TEST(Errors, OptionsThatTheFormatHasNoUseFor) {
+  const Folder folder;
+  const std::string grid = write_grid(folder, "grid.glb");
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--quantize"}, {"--compression", "meshopt"}}) {
+    std::vector<std::string> words{"simplify", grid, "-o", folder / "x.obj", "--ratio", "0.5"};
+    words.insert(words.end(), option.begin(), option.end());
+    const Outcome outcome = fovea(words);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(option[0] + " is for .glb and .gltf"));
+  }
   EXPECT_THAT(folder.names(), ElementsAre("grid.glb"));
 }
 
@@ -120,7 +135,7 @@ TEST(Errors, JsonHoldsTheError) {
   EXPECT_EQ(outcome.code, 3);
   const nlohmann::json json = outcome.json();
   ASSERT_TRUE(json.is_object()) << outcome.out;
-  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["schema_version"], 2);
   EXPECT_EQ(json["verb"], "info");
   EXPECT_EQ(json["exit_code"], 3);
   EXPECT_EQ(json["error"]["kind"], "input");
@@ -134,6 +149,52 @@ TEST(Errors, JsonHoldsUsageErrorsToo) {
   ASSERT_TRUE(json.is_object());
   EXPECT_EQ(json["error"]["kind"], "usage");
   EXPECT_EQ(json["exit_code"], 2);
+}
+
+TEST(Errors, AFailedRunKeepsItsReport) {
+  const Folder folder;
+  const std::string grid = write_grid(folder, "grid.glb");
+  const Outcome outcome = fovea({"render", grid, "-o", folder / "x.png", "--views", "cameras", "--json"});
+  EXPECT_EQ(outcome.code, 5);
+  const nlohmann::json json = outcome.json();
+  ASSERT_TRUE(json.is_object()) << outcome.out;
+  EXPECT_EQ(json["error"]["kind"], "unsupported");
+  EXPECT_EQ(json["error"]["place"], grid);
+  EXPECT_EQ(json["exit_code"], 5);
+  EXPECT_EQ(json["options"]["views"], "cameras");
+  EXPECT_EQ(json["inputs"][0]["path"], grid);
+  EXPECT_EQ(json["phases"][0]["name"], "read");
+  EXPECT_TRUE(json["diagnostics"].is_array());
+}
+
+// Scenes may be empty: what works on any model lets them through, what draws has nothing to do.
+TEST(Errors, ModelsWithoutTriangles) {
+  GltfBuilder builder;
+  const int positions = builder.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  builder.add_mesh({{"attributes", {{"POSITION", positions}}}, {"mode", 0}});
+  const std::vector<std::byte> bytes = builder.glb();
+  const Folder folder;
+  const std::string grid = write_grid(folder, "grid.glb"),
+                    points = folder.write("points.glb",
+                                          {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const std::string note = "fovea: note: " + points + ": the model has no triangles\n";
+  EXPECT_EQ(fovea({"info", points}).err, note);
+  for (const char* saliency : {"none", "auto", "lee"}) {
+    const Outcome outcome = fovea(
+        {"simplify", points, "-o", folder / "x.glb", "--ratio", "0.5", "--force", "--saliency", saliency});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, note);
+  }
+  EXPECT_THAT(fovea({"info", folder / "x.glb"}).out, HasSubstr("points")) << "they are still there";
+  const std::vector<std::string> refused[] = {{"render", points, "-o", folder / "x.png"},
+                                              {"saliency", points, "-o", folder / "x.npy"},
+                                              {"compare", points, grid},
+                                              {"compare", grid, points}};
+  for (const std::vector<std::string>& words : refused) {
+    const Outcome outcome = fovea(words);
+    EXPECT_EQ(outcome.code, 5) << words[0];
+    EXPECT_THAT(outcome.err, HasSubstr("error: " + points + ": the model has no triangles"));
+  }
 }
 
 // The signal comes while the model is read, and 320,000 triangles take far longer to simplify than the

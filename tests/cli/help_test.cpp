@@ -94,6 +94,53 @@ TEST(Suggestions, UnknownFlag) {
   }
 }
 
+TEST(Suggestions, AnOptionOfOtherVerbs) {
+  for (const char* option : {"--quantize", "--no-quantize"}) {
+    EXPECT_EQ(fovea({"info", "a.glb", option}).err,
+              "fovea: error: unknown option '" + std::string(option) +
+                  "'\nhint: --quantize is an option of simplify, sample\n");
+  }
+}
+
+TEST(Suggestions, OnlyWhatIsNear) {
+  EXPECT_EQ(fovea({"info", "a.glb", "--sizes"}).err,
+            "fovea: error: unknown option '--sizes'\nhint: see: fovea info --help\n");
+}
+
+TEST(Suggestions, OfChoices) {
+  EXPECT_THAT(fovea({"render", "a.glb", "--views", "orbits"}).err, HasSubstr("did you mean orbit?"));
+}
+
+TEST(Suggestions, NoneThatLeadsNowhere) {
+  EXPECT_EQ(fovea({"info", "--version"}).out, "fovea " FOVEA_VERSION "\n");
+  const Outcome markdown = fovea({"info", "--help=markdown"});
+  EXPECT_EQ(markdown.code, 2);
+  EXPECT_THAT(markdown.err, HasSubstr("write: fovea --help=markdown"));
+}
+
+// Options that would do nothing are not taken silently, whatever their value.
+TEST(Usage, OptionsThatNeedOthers) {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"--position-bits", "14"}, "--position-bits needs --quantize"},
+      {{"--metric", "quadric", "--image-pass", "lit"}, "--image-pass needs --metric image"},
+      {{"--metric", "visibility", "--metric-from", "2"}, "--metric-from needs --metric image"},
+      {{"--metric", "quadric", "--views", "cube"}, "--views needs a --metric by views"},
+      {{"--region-k", "9"}, "--region-k needs --metric entropy"},
+      {{"--key-poses", "4"}, "--key-poses needs --saliency"},
+      {{"--view-count", "4"}, "--view-count needs --views fibonacci or orbit"}};
+  for (const auto& [more, message] : cases) {
+    std::vector<std::string> words{"simplify", "a.glb", "-o", "b.glb", "--ratio", "0.1"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = fovea(words);
+    EXPECT_EQ(outcome.code, 2) << message;
+    EXPECT_THAT(outcome.err, HasSubstr("error: " + std::string(message)));
+  }
+  EXPECT_THAT(fovea({"simplify", "a.glb", "-o", "b.glb", "--ratio", "0.1", "--metric", "quadric",
+                     "--cull-hidden", "--views", "cube"})
+                  .err,
+              HasSubstr("no such file"));
+}
+
 TEST(Usage, RatioIsNotAPercentage) {
   const Outcome outcome = fovea({"simplify", "a.glb", "-o", "b.glb", "--ratio", "10"});
   EXPECT_EQ(outcome.code, 2);
@@ -103,16 +150,10 @@ TEST(Usage, RatioIsNotAPercentage) {
 
 TEST(Usage, ValuesAreChecked) {
   const std::vector<std::vector<std::string>> wrong{
-      {"--ratio", "ten"},
-      {"--ratio", "nan"},
-      {"--triangles", "-5"},
-      {"--triangles", "1e3"},
-      {"--ratio"},
-      {"--position-bits", "17"},
-      {"--placement", "any"},
-      {"--quantize=perhaps"},
-      {"--threads", "100000"},
-      {"--seed", ""},
+      {"--ratio", "ten"},        {"--ratio", "nan"},     {"--error", "inf"},
+      {"--triangles", "-5"},     {"--triangles", "1e3"}, {"--ratio"},
+      {"--position-bits", "17"}, {"--placement", "any"}, {"--quantize=perhaps"},
+      {"--threads", "100000"},   {"--seed", ""},
   };
   for (std::vector<std::string> words : wrong) {
     words.insert(words.begin(), {"simplify", "a.glb", "-o", "b.glb"});
@@ -123,7 +164,9 @@ TEST(Usage, ValuesAreChecked) {
 }
 
 TEST(Usage, MissingAndSurplusArguments) {
-  EXPECT_THAT(fovea({"info"}).err, HasSubstr("MODEL is missing"));
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"info"}, {"info", ""}, {"saliency", ""}, {"saliency", "a.glb", ""}})
+    EXPECT_THAT(fovea(words).err, HasSubstr("MODEL is missing"));
   EXPECT_THAT(fovea({"info", "a.glb", "b.glb"}).err, HasSubstr("'b.glb' is one argument too many"));
   EXPECT_EQ(fovea({"info", "a.glb", "b.glb"}).code, 2);
 }

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "fovea/io/image_codec.h"
 #include "run_command.h"
 
@@ -28,6 +30,9 @@ TEST_F(RenderVerb, DrawsASheetOfAllViews) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["views"].size(), 24u);
+  EXPECT_EQ(json["inputs"][0]["path"], grid_);
+  EXPECT_EQ(json["outputs"][0]["format"], "png");
+  EXPECT_EQ(json["outputs"][0]["bytes"], std::filesystem::file_size(out("sheet.png")));
   EXPECT_EQ(json["outputs"][0]["width"], 200);
   EXPECT_EQ(json["outputs"][0]["height"], 150);
   const Image8 sheet = picture("sheet.png");
@@ -49,6 +54,33 @@ TEST_F(RenderVerb, DrawsOneViewInTheFormatOfTheExtension) {
     EXPECT_NEAR(image.at(0, 0)[1], 0, 8);
     EXPECT_LT(image.at(32, 32)[0], 240) << "the model is in the middle";
   }
+}
+
+TEST_F(RenderVerb, ASizeIsBothSidesAndASideWins) {
+  const auto size = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", grid_, "-o", out("x.png"), "--view", "1", "--force"});
+    EXPECT_EQ(fovea(words).code, 0);
+    const Image8 image = picture("x.png");
+    return std::pair(image.width, image.height);
+  };
+  EXPECT_EQ(size({}), std::pair(512, 512));
+  EXPECT_EQ(size({"--view-size", "48"}), std::pair(48, 48));
+  EXPECT_EQ(size({"--width", "32", "--view-size", "48"}), std::pair(32, 48));
+}
+
+TEST_F(RenderVerb, SaysWhatWasDrawn) {
+  const Outcome outcome = fovea({"render", grid_, "-o", out("x.png"), "--view-size", "16"});
+  EXPECT_THAT(outcome.out, HasSubstr(grid_ + " -> " + out("x.png") + "\n24 views of "));
+  EXPECT_THAT(outcome.out, HasSubstr("peak memory"));
+}
+
+TEST_F(RenderVerb, StopsBetweenViews) {
+  Running running({"render", grid_, "-o", out("x.png"), "--views", "fibonacci", "--view-count", "400",
+                   "--view-size", "256", "--samples", "8", "--threads", "1", "--verbose"});
+  ASSERT_TRUE(running.wait_for_talk());
+  running.send(SIGINT);
+  EXPECT_EQ(running.wait().code, 130);
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"grid.glb"});
 }
 
 TEST_F(RenderVerb, DrawsTheSameForAnyThreads) {
@@ -77,15 +109,19 @@ TEST_F(RenderVerb, RefusesWhatItCannotDo) {
     const char* message;
   };
   const Case cases[] = {
-      {{"-o", out("x.glb")}, 2, "picture"},
+      {{}, 2, "for example -o picture.png"},
+      {{"-o", out("x.glb")}, 2, "pictures are not written as .glb"},
+      {{"-o", out("x.png"), "--view-count", "5"}, 2, "--view-count needs --views fibonacci or orbit"},
       {{"-o", out("x.png"), "--pass", "field"}, 2, "--field"},
       {{"-o", out("x.png"), "--field", "_HEAT"}, 2, "--pass field"},
-      {{"-o", out("x.png"), "--pass", "field", "--field", "_HEAT"}, 2, "_HEAT"},
+      {{"-o", out("x.png"), "--pass", "field", "--field", "_HEAT"},
+       5,
+       "grid.glb: no mesh has a vertex attribute \"_HEAT\""},
       {{"-o", out("x.png"), "--background", "red"}, 2, "#RRGGBB"},
       {{"-o", out("x.png"), "--view", "25"}, 2, "24 views"},
-      {{"-o", out("x.png"), "--views", "cameras"}, 2, "no cameras"},
+      {{"-o", out("x.png"), "--views", "cameras"}, 5, "grid.glb: the model has no cameras"},
       {{"-o", out("x.png"), "--time", "1"}, 2, "--animation"},
-      {{"-o", out("x.png"), "--animation", "3"}, 2, "no animation 3"},
+      {{"-o", out("x.png"), "--animation", "3"}, 5, "it has none; leave out --animation"},
       {{"-o", out("x.png"), "--width", "0"}, 2, "1..32768"},
       {{"-o", out("x.png"), "--width", "30000", "--columns", "3"}, 2, "65536"},
       {{"-o", folder_ / "no/x.png"}, 7, "folder"},

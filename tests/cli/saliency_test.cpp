@@ -9,7 +9,6 @@
 #include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "run_command.h"
-#include "support/gltf_builder.h"
 #include "support/meshes.h"
 
 namespace fovea::test {
@@ -72,6 +71,8 @@ TEST_F(SaliencyVerb, WritesAHeatMap) {
   EXPECT_EQ(json["inputs"][0]["bytes"], std::filesystem::file_size(grid_));
   EXPECT_EQ(json["outputs"].size(), 1u);
   EXPECT_EQ(json["outputs"][0]["path"], out("heat.glb"));
+  EXPECT_EQ(json["outputs"][0]["format"], "glb");
+  EXPECT_EQ(json["outputs"][0]["bytes"], std::filesystem::file_size(out("heat.glb")));
   EXPECT_EQ(json["outputs"][0]["map"], "saliency");
   EXPECT_EQ(json["poses"], nlohmann::json::array({"rest"}));
   EXPECT_EQ(json["textured"], false) << "its image is black all over";
@@ -104,7 +105,7 @@ TEST_F(SaliencyVerb, KeysOfItsReportAreOnThePage) {
 
 TEST_F(SaliencyVerb, TheExtensionSaysWhatIsWritten) {
   for (const char* name : {"a.png", "a.jpg", "a.webp", "b.PNG"}) {
-    const Outcome outcome = saliency({grid_, "-o", out(name), "--size", "32", "--columns", "3"});
+    const Outcome outcome = saliency({grid_, "-o", out(name), "--view-size", "32", "--columns", "3"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(picture(name).width, 96) << "six views, three beside each other";
     EXPECT_EQ(picture(name).height, 64);
@@ -227,10 +228,10 @@ TEST_F(SaliencyVerb, APoseThatDoesNotFitIsNamed) {
                     same = folder_.write("same.obj", square_obj()),
                     other = folder_.write("other.obj", square_obj() + "v 5 5 5\nf 1 2 5\n");
   const Outcome outcome = saliency({flat, same, other, "-o", out("heat.glb")});
-  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.code, 5);
   EXPECT_THAT(outcome.err, HasSubstr("error: " + other));
   EXPECT_THAT(outcome.err, HasSubstr("hint: poses must have the same"));
-  EXPECT_EQ(saliency({flat, grid_, "-o", out("heat.glb")}).code, 2);
+  EXPECT_EQ(saliency({flat, grid_, "-o", out("heat.glb")}).code, 5);
   EXPECT_THAT(folder_.names(), ElementsAre("a.obj", "grid.glb", "other.obj", "same.obj"));
 }
 
@@ -272,10 +273,8 @@ TEST_F(SaliencyVerb, ThePresetsDiffer) {
 
 TEST_F(SaliencyVerb, WritesTheSameForAnyThreads) {
   for (const char* name : {"heat.glb", "heat.png", "heat.npy"}) {
-    ASSERT_EQ(saliency({grid_, "-o", out(std::string("1") + name), "--threads", "1", "--size", "32"}).code,
-              0);
-    ASSERT_EQ(saliency({grid_, "-o", out(std::string("2") + name), "--threads", "2", "--size", "32"}).code,
-              0);
+    for (const std::string threads : {"1", "2"})
+      ASSERT_EQ(saliency({grid_, "-o", out(threads + name), "--threads", threads}).code, 0);
     EXPECT_EQ(read_text(out(std::string("1") + name)), read_text(out(std::string("2") + name))) << name;
   }
 }
@@ -302,22 +301,29 @@ TEST_F(SaliencyVerb, RefusesWhatItCannotDo) {
       {{grid_}, 2, "-o"},
       {{"-o", out("x.glb")}, 2, "MODEL"},
       {{grid_, "-o", out("x.abc")}, 2, ".abc"},
-      {{grid_, "-o", out("x.glb"), "--as", "field"}, 2, ".npy, .csv or .txt"},
+      {{grid_, "-o", out("x.glb"), "--as", "field"}, 2, "known for fields: .npy, .csv, .txt"},
+      {{grid_, "-o", out("x.glb"), "--columns", "3"}, 2, "--columns needs a picture as output"},
+      {{grid_, "-o", out("x.png"), "--elevation", "9", "--views", "cube"},
+       2,
+       "--elevation needs --views orbit"},
+      {{grid_, "-o", out("x.npy"), "--map", "heigth"}, 2, "did you mean height? there are: all, "},
       {{grid_, "-o", out("x.glb"), "--as", "picture"}, 2, ".png"},
       {{grid_, "-o", out("x.npy"), "--as", "texture"}, 2, ".png"},
       {{grid_, "-o", out("x.png"), "--as", "heat"}, 2, ".glb"},
       {{grid_, "-o", out("x.csv"), "--as", "attribute"}, 2, ".glb"},
       {{grid_, "-o", out("x.obj"), "--as", "attribute"}, 2, "no place"},
       {{grid_, "-o", out("x.glb"), "--as", "photo"}, 2, "texture"},
-      {{square, "-o", out("x.png"), "--as", "texture"}, 2, "texture as its base colour"},
+      {{square, "-o", out("x.png"), "--as", "texture"},
+       5,
+       "square.obj: no triangle has a texture as its base colour"},
       {{grid_, "-o", grid_}, 2, "the output is an input"},
       {{square, grid_, "-o", grid_}, 2, "the output is an input"},
       {{grid_, "-o", folder_ / "no/x.npy"}, 7, "folder"},
-      {{grid_, "-o", out("x.png"), "--views", "cameras"}, 2, "no cameras"},
-      {{grid_, "-o", out("x.png"), "--size", "8192", "--columns", "9", "--view-count", "9"}, 2, "65536"},
+      {{grid_, "-o", out("x.png"), "--views", "cameras"}, 5, "grid.glb: the model has no cameras"},
+      {{grid_, "-o", out("x.png"), "--view-size", "8192", "--columns", "9", "--view-count", "9"}, 2, "65536"},
       {{grid_, "-o", out("x.glb"), "--preset", "itti"}, 2, "munaretti"},
       {{grid_, "-o", out("x.glb"), "--entropy-window", "8"}, 2, "even"},
-      {{grid_, "-o", out("x.glb"), "--animation", "3"}, 2, "no animation 3"},
+      {{grid_, "-o", out("x.glb"), "--animation", "3"}, 5, "grid.glb: the model has no animation 3"},
       {{grid_, "-o", out("x.glb"), "--time", "1"}, 2, "--animation"},
       {{grid_, "-o", out("x.glb"), "--key-poses", "65"}, 2, "1..64"},
       {{grid_, "-o", out("x.glb"), "--geometry-weight", "-1"}, 2, "0..1000"},
@@ -377,8 +383,7 @@ TEST_F(SaliencyVerb, ModelsOfAnySizeHaveNumbers) {
         square = folder_.write("square.obj", "v 0 0 0\nv " + one + " 0 0\nv " + one + " " + one + " 0\nv 0 " +
                                                  one + " " + one + "\nf 1 2 3\nf 1 3 4\n");
     for (const char* name : {"x.glb", "x.csv", "x.png"}) {
-      const Outcome outcome =
-          saliency({square, "-o", out(name), "--map", "all", "--size", "16", "--force", "--json"});
+      const Outcome outcome = saliency({square, "-o", out(name), "--map", "all", "--force", "--json"});
       EXPECT_EQ(outcome.code, 0) << name << outcome.err;
       for (const auto& [map, statistics] : outcome.json()["maps"].items()) {
         for (const auto& [key, number] : statistics.items()) EXPECT_TRUE(number.is_number()) << map << key;
@@ -388,21 +393,6 @@ TEST_F(SaliencyVerb, ModelsOfAnySizeHaveNumbers) {
     EXPECT_EQ(*std::min_element(field.begin(), field.end()), 0);
     EXPECT_EQ(*std::max_element(field.begin(), field.end()), 1);
   }
-}
-
-TEST_F(SaliencyVerb, PointsAloneHaveNone) {
-  GltfBuilder builder;
-  const int positions = builder.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
-  builder.add_mesh({{"attributes", {{"POSITION", positions}}}, {"mode", 0}});
-  const std::vector<std::byte> bytes = builder.glb();
-  const std::string points =
-      folder_.write("points.glb", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  for (const char* name : {"x.glb", "x.csv", "x.png"}) {
-    const Outcome outcome = saliency({points, "-o", out(name), "--size", "16"});
-    EXPECT_EQ(outcome.code, 0) << name << outcome.err;
-  }
-  EXPECT_TRUE(read_field(out("x.csv")).empty());
-  EXPECT_EQ(model(out("x.glb")).meshes[0].surface.parts.size(), 1u) << "the points are still there";
 }
 
 // --- simplify --saliency ---------------------------------------------------------------------------
@@ -485,6 +475,7 @@ TEST_F(SimplifySaliency, AloneIsAutoWhereverItStands) {
   const Outcome misspelt = fovea({"simplify", "--saliency", "leee", grid_, "-o", out("no.glb")});
   EXPECT_EQ(misspelt.code, 2);
   EXPECT_THAT(misspelt.err, HasSubstr("'leee'"));
+  EXPECT_THAT(misspelt.err, HasSubstr("hint: did you mean lee?"));
 }
 
 TEST_F(SimplifySaliency, GoesWithImportance) {
@@ -514,6 +505,9 @@ TEST_F(SimplifySaliency, WrongValuesAreRefused) {
       {{"--saliency", "itti"}, "none|auto|fovea|yang|lee|munaretti"},
       {{"--saliency-weighting", "strong"}, "yang"},
       {{"--saliency-strength", "11"}, "0..10"},
+      {{"--saliency-strength", "1"}, "--saliency-strength needs a preset"},
+      {{"--saliency-weighting", "yang", "--saliency", "auto"}, "--saliency-weighting needs a preset"},
+      {{"--up", "z"}, "--up needs --saliency"},
       {{"--saliency-strength", "-1"}, "0..10"},
       {{"--saliency", "lee", "--key-poses", "0"}, "1..64"},
       {{"--saliency", "lee", "--up", "w"}, "up"},

@@ -151,13 +151,18 @@ TEST(FieldFile, OneValuePerWeldedVertexIsTakenInTheirOrder) {
   EXPECT_EQ(fields[1][VertexId{std::size_t{0}}], static_cast<float>(first));
 }
 
-TEST(FieldFile, WrongSizesAndNumbersAreUsageErrors) {
+TEST(FieldFile, WrongSizesAndNumbersAreFormatErrors) {
   const Model model = two_triangles();
-  expect_error([&] { field_from_source_order(model, std::vector<float>(3)); }, ErrorKind::usage, "",
+  expect_error([&] { field_from_source_order(model, std::vector<float>(3)); }, ErrorKind::format, "",
                "3 values");
   std::vector<float> values(8, 1);  // 4 + 4 welded vertices
-  values[5] = std::numeric_limits<float>::infinity();
-  expect_error([&] { field_from_source_order(model, values); }, ErrorKind::usage, "", "value 5");
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), -infinity}) {
+    values[5] = wrong;
+    expect_error([&] { field_from_source_order(model, values); }, ErrorKind::format, "", "value 5");
+  }
+  values[5] = infinity;  // locks a vertex
+  EXPECT_NO_THROW(field_from_source_order(model, values));
 }
 
 TEST(FieldFile, AttributesAreAveragedOverTheValuesOfAVertex) {
@@ -176,7 +181,7 @@ TEST(FieldFile, AttributesAreAveragedOverTheValuesOfAVertex) {
 TEST(FieldFile, UnknownAttributesNameThosePresent) {
   const auto error = test::error_of([] { field_from_attribute(two_triangles(), "_HEAT"); });
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->kind(), ErrorKind::usage);
+  EXPECT_EQ(error->kind(), ErrorKind::unsupported);
   EXPECT_NE(error->hint().find("COLOR_0, _IMPORTANCE"), std::string::npos) << error->hint();
 }
 
@@ -236,7 +241,8 @@ TEST(FieldFile, WhatCannotBeWrittenIsRefusedBeforehandAndWhenWriting) {
     expect_error([&] { write_field(path, std::vector<float>{1}, "x", force); }, kind, name, message);
   };
   for (const char* name : {"a.glb", "a.png", "a", "npy", ".npy", "a.npy.bak"}) {
-    refused(name, true, ErrorKind::usage, "not written as");
+    refused(name, true, ErrorKind::usage,
+            std::filesystem::path(name).extension().empty() ? "no extension" : "not written as");
     EXPECT_FALSE(std::filesystem::exists(folder.path() / name));
   }
   folder.add("old.csv", "precious");

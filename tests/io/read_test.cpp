@@ -48,7 +48,7 @@ TEST(Read, MissingFoldersAndEmptyFilesAreToldApart) {
   TempFolder folder;
   Context context;
   expect_error([&] { read_model(folder.path() / "no.obj", {}, context); }, ErrorKind::input, "no.obj",
-               "not exist");
+               "no such file");
   expect_error([&] { read_model(folder.path(), {}, context); }, ErrorKind::input, folder.path().string(),
                "folder");
   const auto empty = folder.add("empty.obj", "");
@@ -64,6 +64,13 @@ TEST(Read, WholeFilesAndLimits) {
   EXPECT_EQ(test::text_of(read_file(file, 3000)), content);
   expect_error([&] { read_file(file, 2999); }, ErrorKind::limit, "a");
   EXPECT_EQ(read_file(folder.add("b", ""), 0).size(), 0u);
+}
+
+TEST(Read, AGlbThatIsNone) {
+  TempFolder folder;
+  Context context;
+  const auto file = folder.add("a.glb", "<html>not found</html>");
+  expect_error([&] { read_model(file, {}, context); }, ErrorKind::format, "a.glb", "not a GLB file");
 }
 
 TEST(Read, PipesAreReadToTheirEnd) {

@@ -182,6 +182,23 @@ TEST_F(Write, ModelsReadBackFromEveryFormat) {
               test::corner_soup(cube));
 }
 
+TEST_F(Write, WhatTheFormatHasNoUseForIsRefused) {
+  WriteOptions quantized, compressed;
+  quantized.quantize = true;
+  compressed.compression = GeometryCompression::meshopt;
+  Context context;
+  for (const char* name : {"x.obj", "x.PLY"}) {
+    const auto refused = [&](const WriteOptions& options) {
+      return error_of([&] { write_model(test::model_of(test::cube()), folder_ / name, options, context); });
+    };
+    EXPECT_EQ(refused(quantized).kind(), ErrorKind::usage);
+    EXPECT_EQ(refused(quantized).message(), "--quantize is for .glb and .gltf");
+    EXPECT_EQ(refused(compressed).message(), "--compression is for .glb and .gltf");
+  }
+  EXPECT_NO_THROW(check_output(folder_ / "x.GLB", quantized));
+  EXPECT_TRUE(files().empty());
+}
+
 TEST_F(Write, OptionsAreChecked) {
   WriteOptions options;
   options.position_bits = 17;

@@ -124,11 +124,11 @@ TEST(PeopleData, FacesOfAnObjKeepTheFilesOrder) {
 }
 
 TEST(PeopleData, FacesThatCannotBeToldAreRefused) {
-  Pair(kOff, "1\n2\n3\n").refused(ErrorKind::usage, "a.txt", "3 values fit neither 4 vertices");
+  Pair(kOff, "1\n2\n3\n").refused(ErrorKind::format, "a.txt", "3 values fit neither 4 vertices");
   // A dropped triangle: three in the file, two left.
   std::string off = kOff;
   off.replace(off.find("4 2 0"), 5, "4 3 0");
-  Pair(off + "3 1 1 2\n", "1\n2\n3\n").refused(ErrorKind::usage, "a.txt", "nor 2 triangles");
+  Pair(off + "3 1 1 2\n", "1\n2\n3\n").refused(ErrorKind::format, "a.txt", "nor 2 triangles");
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 2\nf 1 2 3 4\n";
   Pair(square, "1\n", "a.obj").refused(ErrorKind::unsupported, "a.obj: line 6", "4 corners");
   const std::string ply =
@@ -140,8 +140,8 @@ TEST(PeopleData, FacesThatCannotBeToldAreRefused) {
 }
 
 TEST(PeopleData, ValuesMustBeNumbersFromZeroOn) {
-  Pair(kOff, "1\n-2\n3\n4\n").refused(ErrorKind::usage, "a.txt", "value 1");
-  Pair(kOff, "1\nnan\n3\n4\n").refused(ErrorKind::usage, "a.txt", "value 1");
+  Pair(kOff, "1\n-2\n3\n4\n").refused(ErrorKind::format, "a.txt", "value 1");
+  Pair(kOff, "1\nnan\n3\n4\n").refused(ErrorKind::format, "a.txt", "value 1");
   Pair(kOff, "1\ntwo\n3\n4\n").refused(ErrorKind::format, "a.txt: line 2", "");
 }
 
@@ -189,7 +189,7 @@ TEST(PeopleData, BadPointsAreRefused) {
   Pair(kOff, good + "1 1 0 0 0 1 nan 1\n").refused(ErrorKind::format, "a.txt: line 2", "no point");
   Pair(kOff, good + "1 1 0 0 0 1 1e300 1\n").refused(ErrorKind::format, "a.txt: line 2", "no point");
   Pair(kOff, "8 8 8 0 0 1 2 1\n1e30 0 0 0 0 1 2 1\n")
-      .refused(ErrorKind::usage, "a.txt", "none of 2 points is at a vertex");
+      .refused(ErrorKind::format, "a.txt", "none of 2 points is at a vertex");
 }
 
 TEST(PeopleData, PredictionsAreHeldAgainstVerticesOrFaces) {

@@ -232,7 +232,8 @@ TEST(TextureSpace, AnImageThatTellsNoSizeIsRefused) {
 
 TEST(TextureSpace, WithoutATextureThereIsNoSuchSpace) {
   const auto refused = [](const Model& model) {
-    expect_error([&] { texture_space_images(model); }, ErrorKind::usage, "", "no triangle has a texture");
+    expect_error([&] { texture_space_images(model); }, ErrorKind::unsupported, "",
+                 "no triangle has a texture");
   };
   refused(Model{});
   refused(test::model_of(test::cube()));

@@ -309,8 +309,8 @@ TEST(AutoSaliency, CanBeCancelled) {
 }
 
 TEST(AutoSaliency, AModelOfNothingIsRefused) {
-  expect_error([] { chosen(Model{}, 0.5); }, ErrorKind::usage, "");
-  expect_error([] { chosen(test::model_of(test::empty_mesh()), 0.5); }, ErrorKind::usage, "");
+  expect_error([] { chosen(Model{}, 0.5); }, ErrorKind::unsupported, "");
+  expect_error([] { chosen(test::model_of(test::empty_mesh()), 0.5); }, ErrorKind::unsupported, "");
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(Correspondence, PosesAreTakenAsTheyAreShown) {
 TEST(Correspondence, TheFirstDifferenceIsNamed) {
   const Model first = strip(kFlat);
   const auto expect_difference = [&](const Model& pose, const std::string& message) {
-    test::expect_error([&] { surfaces_in(first, pose); }, ErrorKind::usage, "mesh 0", message);
+    test::expect_error([&] { surfaces_in(first, pose); }, ErrorKind::unsupported, "mesh 0", message);
   };
   expect_difference(strip(Points(kFlat.begin(), kFlat.end() - 1)),
                     "there are 6 vertices but the first pose has 7");
@@ -119,7 +119,7 @@ TEST(Correspondence, TheFirstDifferenceIsNamed) {
       [&] {
         surfaces_in(first, test::model_of({test::cube(), test::cube()}));
       },
-      ErrorKind::usage, "", "there are 2 meshes but the first pose has 1");
+      ErrorKind::unsupported, "", "there are 2 meshes but the first pose has 1");
 }
 
 TEST(Correspondence, OfRealPoses) {

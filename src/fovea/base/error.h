@@ -8,10 +8,10 @@ namespace fovea {
 /// What went wrong, in the terms of whoever has to act on it. Each kind has its own exit code.
 enum class ErrorKind {
   internal,     ///< A bug of ours: an invariant that the code promised does not hold.
-  usage,        ///< An option or argument is unknown, out of range or contradicts another.
+  usage,        ///< An option or argument that is wrong whatever the files hold.
   input,        ///< A file cannot be found or read.
-  format,       ///< A file is damaged or breaks the rules of its format.
-  unsupported,  ///< A file is sound but needs something that Fovea cannot do.
+  format,       ///< A file is damaged, breaks the rules of its format or holds bad values.
+  unsupported,  ///< A file is sound but needs what Fovea cannot do, or lacks what is asked of it.
   limit,        ///< The data exceeds a limit on size that protects the machine.
   output,       ///< A file cannot be written.
   cancelled,    ///< The caller asked to stop and no partial result exists.

@@ -21,10 +21,23 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-[[noreturn]] void bad_value(const Option& option, const std::string& text) {
+/// What an option takes: "whole numbers 1..16".
+std::string allowed_text(const Option& option) {
+  const bool whole = std::holds_alternative<std::int64_t*>(option.value) ||
+                     std::holds_alternative<std::optional<std::int64_t>*>(option.value);
   const std::string range = option.range_text();
+  return whole ? "whole numbers" + (range.empty() ? "" : " " + range) : range;
+}
+
+[[noreturn]] void bad_value(const Option& option, const std::string& text) {
+  const std::string allowed = allowed_text(option);
+  std::string hint = allowed.empty() ? "" : "allowed: " + allowed;
+  if (const auto* named = std::get_if<Option::Choice>(&option.value)) {
+    const std::vector<std::string> near = nearest_names(text, named->names);
+    if (!near.empty()) hint = fmt::format("did you mean {}? {}", near.front(), hint);
+  }
   throw Error(ErrorKind::usage, fmt::format("'{}' is not a value for it", text),
-              fmt::format("--{}", option.name), range.empty() ? "" : "allowed: " + range);
+              fmt::format("--{}", option.name), hint);
 }
 
 template <class Number>
@@ -37,7 +50,8 @@ Number parse_number(const Option& option, const std::string& text) {
 }
 
 void check_range(const Option& option, double number) {
-  if (!(number >= option.low && number <= option.high)) bad_value(option, fmt::format("{}", number));
+  if (!(std::isfinite(number) && number >= option.low && number <= option.high))
+    bad_value(option, fmt::format("{}", number));
 }
 
 }  // namespace
@@ -117,15 +131,17 @@ void check(const OptionList& options) {
 
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,
                                        int count) {
+  // Neighbours that changed places count once.
   const auto edit_distance = [&](const std::string& other) {
-    std::vector<std::size_t> row(other.size() + 1);
+    std::vector<std::size_t> before, last, row(other.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
     for (std::size_t i = 1; i <= name.size(); ++i) {
-      std::size_t diagonal = std::exchange(row[0], i);
+      before = std::exchange(last, row);
+      row[0] = i;
       for (std::size_t j = 1; j <= other.size(); ++j) {
-        const std::size_t substitute = diagonal + (name[i - 1] != other[j - 1]);
-        diagonal = row[j];
-        row[j] = std::min({substitute, row[j] + 1, row[j - 1] + 1});
+        row[j] = std::min({last[j - 1] + (name[i - 1] != other[j - 1]), last[j] + 1, row[j - 1] + 1});
+        if (i > 1 && j > 1 && name[i - 1] == other[j - 2] && name[i - 2] == other[j - 1])
+          row[j] = std::min(row[j], before[j - 2] + 1);
       }
     }
     return row.back();
@@ -133,7 +149,7 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
   std::vector<std::pair<std::size_t, std::string>> ranked;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(candidate);
-    if (2 * distance <= std::max(candidate.size(), name.size())) ranked.emplace_back(distance, candidate);
+    if (3 * distance <= std::max(candidate.size(), name.size())) ranked.emplace_back(distance, candidate);
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

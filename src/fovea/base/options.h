@@ -56,7 +56,7 @@ Option::Choice choice(Enum& target, std::vector<std::string> names, std::string 
 void check(const OptionList& options);
 
 /// Those of `candidates` nearest to `name` by edit distance, best first; at most `count`, and none
-/// that differs in more than half of its letters. For "unknown option" messages.
+/// that differs in more than a third of its letters. For "unknown option" messages.
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,
                                        int count = 1);
 

@@ -39,13 +39,13 @@ class ByteBudget {
       throw Error(
           ErrorKind::limit,
           fmt::format("{} bytes more would exceed the {} bytes that a model may take", bytes, max_total_),
-          place, "raise max-total-bytes if the file is to be trusted");
+          place, "raise --max-total-bytes if the file is to be trusted");
     }
     if (used_ + bytes > max_expanded()) {
       throw Error(ErrorKind::limit,
                   fmt::format("{} bytes more would exceed the {} bytes that a file of {} may expand to",
                               bytes, max_expanded(), input_),
-                  place, "raise max-expansion if the file is to be trusted");
+                  place, "raise --max-expansion if the file is to be trusted");
     }
     used_ += bytes;
   }

@@ -14,6 +14,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/text.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/read.h"
 #include "fovea/io/text_scan.h"
 #include "fovea/io/write.h"
@@ -197,7 +198,7 @@ class SourceOrder {
 
   void check_size(std::size_t count) const {
     if (count == sources_ || count == vertices_) return;
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::format,
                 fmt::format("the field has {} values but the model has {} source vertices ({} after welding)",
                             count, sources_, vertices_),
                 {}, "give one value per vertex in the order of the model's file");
@@ -219,9 +220,6 @@ class SourceOrder {
 };
 
 bool is_npy_name(const std::filesystem::path& path) { return lower_extension(path) == ".npy"; }
-bool is_text_name(const std::filesystem::path& path) {
-  return lower_extension(path) == ".csv" || lower_extension(path) == ".txt";
-}
 
 std::string name_of(const AttributeLayer& layer) {
   if (layer.semantic == Semantic::custom) return layer.name;
@@ -298,10 +296,7 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
 }
 
 void check_field_output(const std::filesystem::path& path, bool force) {
-  if (!is_npy_name(path) && !is_text_name(path)) {
-    throw Error(ErrorKind::usage, fmt::format("fields are not written as \"{}\"", path.extension().string()),
-                path.string(), "name the output .npy, .csv or .txt");
-  }
+  check_extension(path, "fields", {".npy", ".csv", ".txt"});
   check_place(path, force);
 }
 
@@ -332,8 +327,8 @@ std::vector<float> field_in_source_order(const Model& model, std::span<const Ver
 
 std::vector<VertexField> field_from_source_order(const Model& model, std::span<const float> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]))
-      throw Error(ErrorKind::usage, fmt::format("value {} of the field is not a finite number", i));
+    if (std::isnan(values[i]) || values[i] == -std::numeric_limits<float>::infinity())
+      throw Error(ErrorKind::format, fmt::format("value {} of the field is {}", i, values[i]));
   }
   return SourceOrder(model).map(values);
 }
@@ -355,7 +350,7 @@ std::vector<VertexField> field_from_attribute(const Model& model, const std::str
     found = found || here;
   }
   if (found) return fields;
-  throw Error(ErrorKind::usage, fmt::format("no mesh has a vertex attribute \"{}\"", name), {},
+  throw Error(ErrorKind::unsupported, fmt::format("no mesh has a vertex attribute \"{}\"", name), {},
               present.empty() ? "the model has no custom attributes and no vertex colours"
                               : fmt::format("there are: {}", fmt::join(present, ", ")));
 }

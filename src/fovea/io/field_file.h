@@ -46,14 +46,14 @@ std::vector<float> field_in_source_order(const Model& model, std::span<const Ver
 /// welded into one, the largest value wins. A list with as many values as the model has welded
 /// vertices is taken in their order instead.
 ///
-/// Throws Error(usage) with both counts if the size fits neither, or for a value that is not finite.
+/// Throws Error(format) with both counts if the size fits neither, or for a value that is NaN or -infinity.
 std::vector<VertexField> field_from_source_order(const Model& model, std::span<const float> values);
 
 /// One field per mesh from a vertex attribute: "_NAME" of a custom layer (the underscore may be left
 /// out), or "COLOR_n", of which the mean of red, green and blue counts. The mean over a vertex's
 /// values where it has several. Vertices and meshes without the attribute get 1.
 ///
-/// Throws Error(usage) with the names that there are if no mesh has the attribute.
+/// Throws Error(unsupported) with the names that there are if no mesh has the attribute.
 std::vector<VertexField> field_from_attribute(const Model& model, const std::string& name);
 
 }  // namespace fovea

@@ -115,7 +115,7 @@ AccessorShape DataReader::shape(int accessor) const {
   if (options_.max_elements < 0 || count > static_cast<std::uint64_t>(options_.max_elements)) {
     throw Error(ErrorKind::limit,
                 fmt::format("{} elements are more than the limit of {}", count, options_.max_elements),
-                json.at("count").place(), "raise max-elements if the file is to be trusted");
+                json.at("count").place(), "raise --max-elements if the file is to be trusted");
   }
   shape.count = static_cast<std::size_t>(count);
   return shape;

@@ -1,10 +1,10 @@
 #include "fovea/io/image_file.h"
+#include "fovea/base/text.h"
 
 #include <string>
 #include <vector>
 
-#include "fovea/base/error.h"
-#include "fovea/base/text.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/io/write.h"
 
@@ -19,11 +19,7 @@ bool is_jpeg(const std::string& extension) { return extension == ".jpg" || exten
 }  // namespace
 
 void check_image_output(const std::filesystem::path& path, bool force) {
-  const std::string extension = lower_extension(path);
-  if (extension != ".png" && extension != ".webp" && !is_jpeg(extension)) {
-    throw Error(ErrorKind::usage, "is not the name of a picture that can be written", path.string(),
-                "use .png, .jpg or .webp");
-  }
+  check_extension(path, "pictures", {".png", ".jpg", ".jpeg", ".webp"});
   check_place(path, force);
 }
 

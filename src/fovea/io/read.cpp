@@ -9,6 +9,8 @@
 #include "fovea/base/error.h"
 #include "fovea/base/text.h"
 #include "fovea/io/assimp_read.h"
+#include "fovea/io/extension.h"
+#include "fovea/io/glb.h"
 #include "fovea/io/gltf_read.h"
 #include "fovea/io/obj_read.h"
 #include "fovea/io/off_read.h"
@@ -73,8 +75,11 @@ Model read_as(FileFormat format, std::span<const std::byte> bytes, const fs::pat
   const fs::path folder = path.parent_path();
   const std::string place = path.string();
   switch (format) {
-    case FileFormat::gltf:
-    case FileFormat::glb: return read_gltf(bytes, folder, place, options, context);
+    case FileFormat::glb:
+      if (!gltf::is_glb(bytes))
+        throw Error(ErrorKind::format, "this is not a GLB file: it does not begin with \"glTF\"", place);
+      return read_gltf(bytes, folder, place, options, context);
+    case FileFormat::gltf: return read_gltf(bytes, folder, place, options, context);
     case FileFormat::obj: return read_obj(bytes, folder, place, options, context);
     case FileFormat::ply: return read_ply(bytes, folder, place, options, context);
     case FileFormat::stl: return read_stl(bytes, place, options, context);
@@ -134,9 +139,9 @@ std::vector<std::byte> read_file(const fs::path& path, std::int64_t max_bytes) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) {
-    throw Error(ErrorKind::input, "the file does not exist", place);
+    throw Error(ErrorKind::input, "no such file", place);
   }
-  if (fs::is_directory(status)) throw Error(ErrorKind::input, "this is a folder, not a file", place);
+  if (fs::is_directory(status)) throw Error(ErrorKind::input, "is a folder", place);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(ErrorKind::input, "the file cannot be opened for reading", place);
   // A pipe or device tells no size: it is read piece by piece, up to the same limit.

@@ -10,6 +10,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/text.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/gltf_write.h"
 #include "fovea/io/obj_write.h"
 #include "fovea/io/ply_write.h"
@@ -19,17 +20,6 @@ namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
-
-void check_extension(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  for (const char* known : {".glb", ".gltf", ".obj", ".ply"}) {
-    if (extension == known) return;
-  }
-  throw Error(ErrorKind::usage,
-              extension.empty() ? std::string("the output has no file name extension")
-                                : fmt::format("'{}' is not a format that can be written", extension),
-              path.string(), "known: .glb, .gltf, .obj, .ply");
-}
 
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -208,8 +198,19 @@ OptionList describe(WriteOptions& o) {
 }
 
 void check_output(const fs::path& path, bool force) {
-  check_extension(path);
+  check_extension(path, "models", {".glb", ".gltf", ".obj", ".ply"});
   check_place(path, force);
+}
+
+void check_output(const fs::path& path, const WriteOptions& options) {
+  check_output(path, options.force);
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb" || extension == ".gltf") return;
+  const bool compressed = options.compression != GeometryCompression::none;
+  if (!options.quantize && !compressed) return;
+  throw Error(ErrorKind::usage,
+              fmt::format("{} is for .glb and .gltf", options.quantize ? "--quantize" : "--compression"),
+              path.string(), "leave it out, or name the output .glb");
 }
 
 void check_place(const fs::path& path, bool force) {
@@ -237,7 +238,7 @@ void write_files(const fs::path& path, std::span<const OutputFile> files, bool f
 
 std::vector<fs::path> write_model(const Model& model, const fs::path& path, const WriteOptions& options,
                                   Context& context) {
-  check_output(path, options.force);
+  check_output(path, options);
   WriteOptions checked = options;
   check(describe(checked));
   const std::vector<OutputFile> files = encode_model(model, path, options, context);

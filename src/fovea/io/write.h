@@ -51,7 +51,9 @@ std::vector<std::filesystem::path> write_model(const Model& model, const std::fi
 /// in the end: Error(usage) for an unknown extension or an existing file without `force`, Error(output) for a
 /// folder that is missing or a place that is taken by something else than a file.
 void check_output(const std::filesystem::path& path, bool force);
-/// The same for a file of any kind, whatever its extension.
+/// And Error(usage) for options that the format of the extension has no use for.
+void check_output(const std::filesystem::path& path, const WriteOptions& options);
+/// The first for a file of any kind, whatever its extension.
 void check_place(const std::filesystem::path& path, bool force);
 
 /// Writes files safely: each to a temporary name beside its place, then all renamed, `path` itself last.

@@ -107,12 +107,17 @@ OptionList describe(CompareOptions& o) {
   options.insert(
       options.end(),
       {{"view-size", "Pixels along each side of a view.", &o.size, "pixels", 11, 8192},
-       {"samples", "Places per pixel and axis where the nearest surface is looked for.", &o.samples, "", 1,
-        8},
        {"pixels-per-degree", "Of the observer that FLIP stands for: 67 is a 4K screen at arm's length.",
         &o.pixels_per_degree, "", 1, 1000},
        {"distance-samples", "Points on each surface for the distance between them.", &o.distance_samples, "",
         100, 1e8}});
+  // As pictures have it.
+  RenderOptions picture;
+  for (Option& option : describe(picture)) {
+    if (option.name != "samples") continue;
+    option.value = &o.samples;
+    options.push_back(option);
+  }
   return options;
 }
 
@@ -128,7 +133,7 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
   const Pose pose = pose_of(reference, options.pose);
   const RenderScene scene = make_render_scene(reference, pose, context);
   if (scene.triangle_count == 0)
-    throw Error(ErrorKind::usage, "the reference has no triangles to compare with");
+    throw Error(ErrorKind::unsupported, "the reference has no triangles to compare with");
   std::vector<RenderScene> test_scenes;
   for (const Model* test : tests)
     test_scenes.push_back(make_render_scene(*test, pose_of(*test, options.pose), context, &scene));

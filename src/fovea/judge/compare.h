@@ -79,9 +79,9 @@ constexpr double kHottestDistance = 0.005;
 /// protocol of Yang et al. 2016: 24 at the vertices of the small rhombicuboctahedron), base colour and lit,
 /// and the surfaces themselves.
 ///
-/// Throws Error(usage) for a reference with no triangles and for an animation that a model lacks. The same
-/// for any number of threads. Views are worked on one by one per thread, so that memory does not grow with
-/// their number.
+/// Throws Error(unsupported) for a reference with no triangles and for an animation that a model lacks. The
+/// same for any number of threads. Views are worked on one by one per thread, so that memory does not grow
+/// with their number.
 std::vector<Comparison> compare(const Model& reference, std::span<const Model* const> tests,
                                 const CompareOptions& options, Context& context,
                                 const CompareObserver& observer = {});

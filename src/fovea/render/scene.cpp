@@ -218,7 +218,7 @@ std::vector<View> views_of(const ViewOptions& options, const Model& model, const
   if (options.set != ViewSet::cameras) return make_views(options, sphere);
   std::vector<View> views = camera_views(model, pose);
   if (views.empty())
-    throw Error(ErrorKind::usage, "the model has no cameras", {}, "choose another set with --views");
+    throw Error(ErrorKind::unsupported, "the model has no cameras", {}, "choose another set with --views");
   return views;
 }
 

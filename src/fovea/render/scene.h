@@ -91,7 +91,7 @@ RenderScene make_render_scene(const TriMesh& mesh);
 std::vector<View> camera_views(const Model& model, const Pose& pose);
 
 /// The views of a set onto a model in a pose; around the sphere, unless they are its own cameras.
-/// Throws Error(usage) if these are asked for and there are none.
+/// Throws Error(unsupported) if these are asked for and there are none.
 std::vector<View> views_of(const ViewOptions& options, const Model& model, const Pose& pose,
                            const Sphere& sphere);
 

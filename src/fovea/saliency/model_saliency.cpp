@@ -375,6 +375,9 @@ OptionList describe(SaliencyOptions& o) {
   const auto weight = [](const char* name, const char* help, std::optional<double>& value) {
     return Option{name, help, &value, "", 0, 1000};
   };
+  KeyPoseOptions poses;
+  Option key_poses = describe(poses).front();
+  key_poses.value = &o.key_poses;
   OptionList list{
       {"preset", "How to tell where people look; what is not given besides is as it has it.",
        choice(o.preset, {"fovea", "yang", "lee", "munaretti"}), ""},
@@ -395,9 +398,7 @@ OptionList describe(SaliencyOptions& o) {
       {"up", "Which way is up.", choice(o.ring.up, {"x", "y", "z", "-x", "-y", "-z"}), ""},
       {"ring-count", "Places around the model that visibility is seen from.", &o.ring.count, "", 1, 360},
       {"ring-elevation", "How high above the horizon they are.", &o.ring.elevation_deg, "degrees", -89, 89},
-      {"key-poses",
-       "Most poses of the model's animations and morph targets to look at; 1 looks at one pose alone.",
-       &o.key_poses, "", 1, 64}};
+      key_poses};
   const OptionList pose = describe(o.pose);
   list.insert(list.end(), pose.begin(), pose.end());
   return list;
@@ -408,10 +409,10 @@ ModelSaliency model_saliency(const Model& model, const SaliencyOptions& options,
   SaliencyOptions checked = options;
   check(describe(checked));
   if (options.entropy_window % 2 == 0)
-    throw Error(ErrorKind::usage, "the window of entropy has an even side", "entropy-window");
+    throw Error(ErrorKind::usage, "the window of entropy has an even side", "--entropy-window");
   check(options.pose);
   if (options.pose.animation && (options.key_poses > 1 || !poses.empty()))
-    throw Error(ErrorKind::usage, "one moment of an animation and several poses are asked for", "animation",
+    throw Error(ErrorKind::usage, "one moment of an animation and several poses are asked for", "--animation",
                 "leave out --animation, or --key-poses and further files");
   return Maker(model, options, context).run(poses);
 }

@@ -80,9 +80,9 @@ struct ModelSaliency {
 /// as on a plane or where neighbourhoods hold no second vertex, saliency is 0, which is reported to `context`
 /// as "even-saliency".
 ///
-/// `poses` are models of the same connectivity in other poses. Throws Error(usage) if they do not fit, for
-/// options out of range, or if all weights are 0; Error(unsupported) for triangles beyond what floats hold.
-/// Always a number, and the same in any unit of length. Parallel; the same bits for any number of
+/// `poses` are models of the same connectivity in other poses. Throws Error(usage) for options out of
+/// range or if all weights are 0; Error(unsupported) if poses do not fit or triangles lie beyond what floats
+/// hold. Always a number, and the same in any unit of length. Parallel; the same bits for any number of
 /// threads. Cost: surface_signals.h, `gaussian_averages` per pose, viewing.h.
 ModelSaliency model_saliency(const Model& model, const SaliencyOptions& options, Context& context,
                              std::span<const Model> poses = {});

@@ -179,7 +179,7 @@ PeopleMap map_of_points(std::span<const GazePoint> points, const Surface& surfac
     }
   }
   if (map.strays == map.points) {
-    throw Error(ErrorKind::usage, fmt::format("none of {} points is at a vertex of the model", map.points),
+    throw Error(ErrorKind::format, fmt::format("none of {} points is at a vertex of the model", map.points),
                 place);
   }
   return map;
@@ -274,7 +274,7 @@ struct Sizes {
 };
 
 [[noreturn]] void refuse_size(std::size_t count, const PeopleFiles& files, const Sizes& sizes) {
-  throw Error(ErrorKind::usage,
+  throw Error(ErrorKind::format,
               fmt::format("{} values fit neither {} vertices of the file ({} after welding) nor {} triangles",
                           count, sizes.source_vertices, sizes.vertices, sizes.faces),
               files.map.string(),
@@ -359,7 +359,7 @@ PeopleMap read_people_map(const PeopleFiles& files, const Model& model) {
   std::vector<float> values = read_field(files.map);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i]) || values[i] < 0)
-      throw Error(ErrorKind::usage, fmt::format("value {} is not a number from 0 on", i), place);
+      throw Error(ErrorKind::format, fmt::format("value {} is not a number from 0 on", i), place);
   }
   return map_of_values(std::move(values), files, model);
 }

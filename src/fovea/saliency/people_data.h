@@ -45,7 +45,7 @@ struct PeopleMap {
 /// Or a list of points, text with eight numbers a line: x y z nx ny nz seconds binary. The seconds go to the
 /// nearest vertex that is no farther than 10⁻⁵ of the diagonal, of several the largest; other vertices get 0.
 ///
-/// Throws Error(usage) if the sizes do not fit or no point is at a vertex, Error(unsupported) for triangles
+/// Throws Error(format) if the sizes do not fit or no point is at a vertex, Error(unsupported) for triangles
 /// whose order is not known, and what `read_field` throws. The place is the map's file.
 PeopleMap read_people_map(const PeopleFiles& files, const Model& model);
 

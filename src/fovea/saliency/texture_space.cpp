@@ -119,7 +119,7 @@ std::vector<int> texture_space_images(const Model& model) {
     }
   }
   if (images.empty())
-    throw Error(ErrorKind::usage, "no triangle has a texture as its base colour", {},
+    throw Error(ErrorKind::unsupported, "no triangle has a texture as its base colour", {},
                 "there is no texture space to draw a map in");
   return {images.begin(), images.end()};
 }

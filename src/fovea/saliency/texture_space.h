@@ -9,7 +9,7 @@
 namespace fovea {
 
 /// The images that are the base colour of triangles with a place in them, in their order: what
-/// `texture_space_map` can be drawn for. Throws Error(usage) if there is none.
+/// `texture_space_map` can be drawn for. Throws Error(unsupported) if there is none.
 std::vector<int> texture_space_images(const Model& model);
 
 /// The saliency texture map of Yang et al. (2016), section 5: the field interpolated over the triangles in

@@ -41,13 +41,8 @@ void check_request(const Model& model, SimplifyOptions options, const Importance
                   fmt::format("mesh {} has {} vertices, its importance {}", m, expected, field.size()),
                   "importance");
     }
-    for (const float w : field.values()) {
-      if (!(w >= 0)) {
-        throw Error(ErrorKind::usage, fmt::format("mesh {} has the value {}", m, w), "importance",
-                    "values are 0 or more; infinity locks a vertex");
-      }
-    }
   }
+  check(importance);
 }
 
 /// The largest scale at which each mesh is shown; 1 if it is not.
@@ -126,7 +121,7 @@ double error_bound(const SimplifyOptions& options, double diagonal) {
   return bound;
 }
 
-/// The hidden faces of each mesh. Throws Error(usage) if there is nothing else.
+/// The hidden faces of each mesh. Throws Error(unsupported) if there is nothing else.
 std::vector<std::vector<FaceId>> hidden_of(const Model& model, const ViewOptions& views,
                                            const Context& context) {
   std::vector<std::vector<FaceId>> hidden = hidden_faces(model, views, context);
@@ -136,8 +131,8 @@ std::vector<std::vector<FaceId>> hidden_of(const Model& model, const ViewOptions
     hidden_count += hidden[m].size();
   }
   if (faces > 0 && hidden_count == faces) {
-    throw Error(ErrorKind::usage, "no view sees any triangle of the model", "--cull-hidden",
-                "look from elsewhere with --views");
+    throw Error(ErrorKind::unsupported, "no view sees any triangle of the model", {},
+                "leave out --cull-hidden, or look from elsewhere with --views");
   }
   return hidden;
 }
@@ -217,6 +212,17 @@ void append(CollapseRecord& all, CollapseRecord&& batch, const std::vector<std::
 }
 
 }  // namespace
+
+void check(const Importance& importance) {
+  for (std::size_t m = 0; m < importance.size(); ++m) {
+    for (const float w : importance[m].values()) {
+      if (!(w >= 0)) {
+        throw Error(ErrorKind::format, fmt::format("mesh {} has the importance {}", m, w), {},
+                    "values are 0 or more; infinity locks a vertex");
+      }
+    }
+  }
+}
 
 const char* to_string(StopReason reason) {
   switch (reason) {

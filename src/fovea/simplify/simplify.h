@@ -79,6 +79,8 @@ OptionList describe(SimplifyOptions& options);
 /// How much each vertex matters, [#meshes][#V of the mesh] or empty: multiplies the vertex's error. 1
 /// is neutral, more keeps, less gives away; infinity locks the vertex where it is.
 using Importance = std::vector<VertexField>;
+/// Throws Error(format) for values that are NaN or negative.
+void check(const Importance& importance);
 
 enum class StopReason {
   target,     ///< The triangle count was reached.
@@ -122,7 +124,7 @@ struct SimplifyResult {
 /// for how.
 ///
 /// Throws Error(usage) for options out of range, no target at all, or an importance field of the
-/// wrong size or with values that are NaN or negative. Not reaching a target is a result.
+/// wrong size, and what `check` throws. Not reaching a target is a result.
 /// Deterministic for any number of threads. Error(cancelled) comes from finding what is seen.
 SimplifyResult simplify(const Model& model, const SimplifyOptions& options, const Importance& importance,
                         Context& context);

@@ -15,7 +15,7 @@ namespace fovea {
 namespace {
 
 [[noreturn]] void differ(const std::string& message) {
-  throw Error(ErrorKind::usage, message, {},
+  throw Error(ErrorKind::unsupported, message, {},
               "poses must have the same vertices and triangles in the same order");
 }
 

@@ -15,17 +15,17 @@ namespace fovea {
 /// For each vertex of `first` the one of `other` that holds the same vertex of their files: the earliest, if
 /// `first` welded several. A mesh that came from no file is its own source. [#V of first].
 ///
-/// Throws Error(usage) with the first difference if the files have not the same number of vertices or not the
-/// same triangles in the same order. Triangles are compared up to what either welding merged; what both
-/// merged cannot be compared any more. O(#V + #F).
+/// Throws Error(unsupported) with the first difference if the files have not the same number of vertices or
+/// not the same triangles in the same order. Triangles are compared up to what either welding merged; what
+/// both merged cannot be compared any more. O(#V + #F).
 std::vector<VertexId> corresponding_vertices(const TriMesh& first, const TriMesh& other);
 
 /// The surfaces of a model in one pose with the vertices and triangles of the first pose's meshes, each as
 /// the model's first instance shows it at rest, or in its own space where nothing shows it. [#meshes].
 /// `surfaces_in(first, first)` are those of the first pose itself.
 ///
-/// Throws Error(usage) as `corresponding_vertices`, with the mesh's number, or if there are more or fewer
-/// meshes.
+/// Throws Error(unsupported) as `corresponding_vertices`, with the mesh's number, or if there are more or
+/// fewer meshes.
 std::vector<Surface> surfaces_in(const Model& first, const Model& pose);
 
 }  // namespace fovea

@@ -322,8 +322,9 @@ std::vector<Choice> farthest_points(const Distances& distances, std::size_t coun
 }  // namespace
 
 OptionList describe(KeyPoseOptions& o) {
-  return {{"key-poses", "Look at so many poses of the model's animations and morph targets.", &o.count,
-           "poses", 1, 64}};
+  return {{"key-poses",
+           "Most poses of the model's animations and morph targets to look at; 1 looks at one pose alone.",
+           &o.count, "", 1, 64}};
 }
 
 std::vector<KeyPose> key_poses(const Model& model, const KeyPoseOptions& options, const Context& context) {

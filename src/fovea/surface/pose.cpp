@@ -272,8 +272,10 @@ Pose pose_of(const Model& model, const PoseOptions& options) {
 
 Pose pose_at(const Model& model, std::size_t animation, double time_s) {
   if (animation >= model.animations.size()) {
-    throw Error(ErrorKind::usage, "the model has no animation " + std::to_string(animation), {},
-                "it has " + std::to_string(model.animations.size()) + ", counted from 0");
+    const std::size_t count = model.animations.size();
+    throw Error(ErrorKind::unsupported, "the model has no animation " + std::to_string(animation), {},
+                count == 0 ? "it has none; leave out --animation"
+                           : "it has " + std::to_string(count) + ", counted from 0");
   }
   Pose pose = rest_pose(model);
   std::vector<Node> nodes = model.nodes;

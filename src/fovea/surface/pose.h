@@ -22,7 +22,7 @@ Pose rest_pose(const Model& model);
 
 /// The nodes at a time of an animation; before its first key the first, after its last the last. Nodes that
 /// it does not move rest. What it does to anything but nodes is left out.
-/// Throws Error(usage) if there is no such animation.
+/// Throws Error(unsupported) if there is no such animation.
 Pose pose_at(const Model& model, std::size_t animation, double time_s);
 
 /// Which pose of a model is meant: at rest, or at a time of an animation.

@@ -1,0 +1,62 @@
+#include "shared_options.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "fovea/base/error.h"
+#include "fovea/judge/compare.h"
+
+namespace fovea::cli {
+
+Option taken(const OptionList& options, const std::string& name, Option::Value value) {
+  const auto at =
+      std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.name == name; });
+  if (at == options.end()) throw Error(ErrorKind::internal, "no such option", "--" + name);
+  Option option = *at;
+  option.value = std::move(value);
+  return option;
+}
+
+Positional model_argument(std::string& path) {
+  return {"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &path};
+}
+
+Option describe_output(std::string& path) {
+  return {"output", "File to write; its extension picks the format.", &path, "output"};
+}
+
+Option describe_force(bool& force) {
+  WriteOptions model;
+  return taken(describe(model), "force", &force);
+}
+
+Option describe_view_size(std::int64_t& size) {
+  CompareOptions compare;
+  return taken(describe(compare), "view-size", &size);
+}
+
+Option describe_columns(std::int64_t& columns) {
+  return {"columns", "Views side by side in a sheet; 0 makes it about square.", &columns, "", 0, 4096};
+}
+
+Option describe_field(const std::string& name, const std::string& help, std::string& source) {
+  return {
+      name,
+      help + ": a .npy, .csv or .txt file, or the name of a vertex attribute such as _IMPORTANCE or COLOR_0.",
+      &source, "file or name"};
+}
+
+void need_format(Arguments& arguments, const WriteOptions& options) {
+  arguments.need({{"position-bits", "uv-bits", "normal-bits", "color-bits"}, "--quantize", [&options] {
+                    return options.quantize;
+                  }});
+}
+
+void need_views(Arguments& arguments, const ViewOptions& views) {
+  arguments.need({{"view-count"}, "--views fibonacci or orbit", [&views] {
+                    return views.set == ViewSet::fibonacci || views.set == ViewSet::orbit;
+                  }});
+  arguments.need({{"elevation"}, "--views orbit", [&views] { return views.set == ViewSet::orbit; }});
+}
+
+}  // namespace fovea::cli

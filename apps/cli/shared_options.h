@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "arguments.h"
+#include "fovea/io/write.h"
+#include "fovea/render/view.h"
+
+namespace fovea::cli {
+
+// Arguments and options that several verbs have, described once.
+
+/// The option of that name with another value behind it.
+Option taken(const OptionList& options, const std::string& name, Option::Value value);
+
+Positional model_argument(std::string& path);
+Option describe_output(std::string& path);
+Option describe_force(bool& force);
+Option describe_view_size(std::int64_t& size);
+Option describe_columns(std::int64_t& columns);
+/// An option that names numbers per vertex (field_source.h); `help` says what for.
+Option describe_field(const std::string& name, const std::string& help, std::string& source);
+
+/// What the options of written models need of each other.
+void need_format(Arguments& arguments, const WriteOptions& options);
+/// And those of views.
+void need_views(Arguments& arguments, const ViewOptions& views);
+
+}  // namespace fovea::cli
