@@ -1,0 +1,118 @@
+#include "fovea/texture/encode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fovea/base/error.h"
+#include "fovea/io/image_codec.h"
+#include "fovea/judge/psnr.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr int kTile = 64, kTilesAcross = 8;
+constexpr double kNoLoss = std::numeric_limits<double>::infinity();
+
+std::vector<std::uint8_t> encoded(const Image8& image, TextureFormat format, int quality) {
+  switch (format) {
+    case TextureFormat::png: return encode_png(image);
+    case TextureFormat::jpeg: return encode_jpeg(image, quality);
+    case TextureFormat::webp: return encode_webp(image, quality == 0 ? 101 : quality);
+  }
+  throw Error(ErrorKind::internal, "an unknown format of textures");
+}
+
+/// Decoders may turn grey into colours, or leave out alpha that is opaque.
+Image8 with_channels(const Image8& image, int channels) {
+  if (image.channels == channels) return image;
+  Image8 result(image.width, image.height, channels, image.encoding);
+  const bool alpha = channels == 2 || channels == 4, had_alpha = image.channels == 2 || image.channels == 4;
+  const int colors = alpha ? channels - 1 : channels, had = had_alpha ? image.channels - 1 : image.channels;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* from = image.at(x, y);
+      std::uint8_t* to = result.at(x, y);
+      for (int k = 0; k < colors; ++k) to[k] = from[std::min(k, had - 1)];
+      if (alpha) to[colors] = had_alpha ? from[had] : 255;
+    }
+  }
+  return result;
+}
+
+EncodedTexture measured(const Image8& image, TextureFormat format, int quality) {
+  EncodedTexture result{encoded(image, format, quality), quality, 0};
+  const Image8 decoded = with_channels(decode_image(result.bytes), image.channels);
+  result.psnr_db = psnr(mean_squared_error(image, decoded));
+  return result;
+}
+
+/// Tiles from all over the image side by side, or all of it if it is not larger.
+Image8 excerpt(const Image8& image) {
+  constexpr int kSide = kTile * kTilesAcross;
+  if (image.width <= kSide && image.height <= kSide) return image;
+  const int across = std::min(kTilesAcross, std::max(image.width / kTile, 1));
+  const int down = std::min(kTilesAcross, std::max(image.height / kTile, 1));
+  const int width = std::min(kTile, image.width), height = std::min(kTile, image.height);
+  Image8 result(across * width, down * height, image.channels, image.encoding);
+  const auto start = [](int tile, int tiles, int size, int side) {
+    return tiles > 1 ? static_cast<int>(std::int64_t{side - size} * tile / (tiles - 1)) : (side - size) / 2;
+  };
+  for (int y = 0; y < result.height; ++y) {
+    for (int tile = 0; tile < across; ++tile) {
+      const int from_x = start(tile, across, width, image.width);
+      const int from_y = start(y / height, down, height, image.height) + y % height;
+      std::copy_n(image.at(from_x, from_y), width * image.channels, result.at(tile * width, y));
+    }
+  }
+  return result;
+}
+
+/// The lowest quality of 1 … 100 at which an image is near enough, or 100.
+int lowest_quality(const Image8& image, TextureFormat format, double least_psnr_db) {
+  int low = 1, high = 100;
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (measured(image, format, middle).psnr_db >= least_psnr_db) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low;
+}
+
+}  // namespace
+
+std::string mime_type(TextureFormat format) {
+  switch (format) {
+    case TextureFormat::png: return "image/png";
+    case TextureFormat::jpeg: return "image/jpeg";
+    case TextureFormat::webp: return "image/webp";
+  }
+  throw Error(ErrorKind::internal, "an unknown format of textures");
+}
+
+EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db) {
+  const auto without_loss = [&] { return EncodedTexture{encoded(image, format, 0), 0, kNoLoss}; };
+  if (format == TextureFormat::png) return without_loss();
+  if (!std::isfinite(least_psnr_db))
+    return format == TextureFormat::webp ? without_loss() : measured(image, format, 100);
+  const Image8 part = excerpt(image);
+  int quality = lowest_quality(part, format, least_psnr_db);
+  EncodedTexture result = measured(image, format, quality);
+  // The excerpt is not the whole: some steps more may be needed.
+  while (result.psnr_db < least_psnr_db && quality < 100) {
+    quality = std::min(quality + 2, 100);
+    result = measured(image, format, quality);
+  }
+  if (format == TextureFormat::jpeg) return result;
+  if (result.psnr_db < least_psnr_db) return without_loss();
+  // Drawings and even colours are often smaller without loss.
+  if (encoded(part, format, 0).size() >= encoded(part, format, quality).size()) return result;
+  EncodedTexture exact = without_loss();
+  return exact.bytes.size() < result.bytes.size() ? exact : result;
+}
+
+}  // namespace fovea

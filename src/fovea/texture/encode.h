@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fovea/model/image.h"
+
+namespace fovea {
+
+/// File formats that textures can be stored in.
+enum class TextureFormat { png, jpeg, webp };
+
+/// "image/png", "image/jpeg", "image/webp".
+std::string mime_type(TextureFormat format);
+
+struct EncodedTexture {
+  std::vector<std::uint8_t> bytes;
+  int quality = 0;     ///< 1 … 100; 0 without loss.
+  double psnr_db = 0;  ///< Of what decodes, to the image that was given; infinite without loss.
+};
+
+/// The smallest file of that format that decodes to at least `least_psnr_db` over all channels (stored
+/// values), or one without loss if the format has such and none is near enough or it is smaller. JPEG does
+/// not store alpha, which has to be opaque or of no use, and where 100 is not near enough it is 100. An
+/// infinite `least_psnr_db` asks for no loss.
+///
+/// The quality is looked for on at most 512² texels, in tiles from all over the image; then the whole is
+/// encoded, again at a higher quality if it missed. Deterministic. Throws Error(unsupported) for sides that
+/// the format does not have (WebP 16,383, JPEG 65,535).
+EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db);
+
+}  // namespace fovea

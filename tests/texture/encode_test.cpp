@@ -1,0 +1,86 @@
+#include "fovea/texture/encode.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "fovea/io/image_codec.h"
+#include "fovea/judge/psnr.h"
+#include "support/pictures.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kNoLoss = std::numeric_limits<double>::infinity();
+
+Image8 even(int width, int height) {
+  Image8 image(width, height, 3, ColorEncoding::srgb);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = i % 3 == 0 ? 200 : 30;
+  return image;
+}
+
+class EncodeToPsnr : public ::testing::TestWithParam<TextureFormat> {};
+
+TEST_P(EncodeToPsnr, IsAsNearAsAskedAndSaysHowNear) {
+  const Image8 image = test::pattern(300, 200);
+  for (const double wanted : {25.0, 35.0, 42.0}) {
+    const EncodedTexture found = encode_to_psnr(image, GetParam(), wanted);
+    EXPECT_EQ(image_info(found.bytes).mime_type, mime_type(GetParam()));
+    EXPECT_GE(found.psnr_db, wanted);
+    const double measured = psnr(mean_squared_error(image, decode_image(found.bytes)));
+    EXPECT_DOUBLE_EQ(found.psnr_db, measured);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, EncodeToPsnr,
+                         ::testing::Values(TextureFormat::png, TextureFormat::jpeg, TextureFormat::webp));
+
+TEST(EncodeToPsnr, IsTheLowestQualityThatIsNearEnough) {
+  const Image8 image = test::pattern(300, 200);
+  const EncodedTexture found = encode_to_psnr(image, TextureFormat::jpeg, 35);
+  ASSERT_GT(found.quality, 1);
+  EXPECT_LT(psnr(mean_squared_error(image, decode_image(encode_jpeg(image, found.quality - 1)))), 35);
+}
+
+TEST(EncodeToPsnr, LargeImagesAreMeasuredWhole) {
+  const Image8 image = test::pattern(1500, 700);
+  const EncodedTexture found = encode_to_psnr(image, TextureFormat::jpeg, 38);
+  EXPECT_GE(found.psnr_db, 38);
+  EXPECT_DOUBLE_EQ(found.psnr_db, psnr(mean_squared_error(image, decode_image(found.bytes))));
+}
+
+// WebP halves the resolution of colours whatever its quality.
+TEST(EncodeToPsnr, WhatNoQualityReachesIsStoredWithoutLoss) {
+  const Image8 image = test::pattern(64, 64);
+  const EncodedTexture found = encode_to_psnr(image, TextureFormat::webp, 60);
+  EXPECT_EQ(found.quality, 0);
+  EXPECT_EQ(decode_image(found.bytes).pixels, image.pixels);
+  EXPECT_EQ(encode_to_psnr(image, TextureFormat::webp, kNoLoss).psnr_db, kNoLoss);
+  EXPECT_EQ(encode_to_psnr(image, TextureFormat::jpeg, kNoLoss).quality, 100);
+}
+
+TEST(EncodeToPsnr, EvenColorsAreSmallerWithoutLoss) {
+  const EncodedTexture found = encode_to_psnr(even(800, 600), TextureFormat::webp, 40);
+  EXPECT_EQ(found.quality, 0);
+  EXPECT_EQ(decode_image(found.bytes).pixels, even(800, 600).pixels);
+}
+
+TEST(EncodeToPsnr, AlphaAndGreyComeThrough) {
+  for (const int channels : {1, 2, 4}) {
+    Image8 image(40, 30, channels, ColorEncoding::srgb);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      image.pixels[i] = static_cast<std::uint8_t>(i * 7 / static_cast<std::size_t>(channels) % 256);
+    for (const TextureFormat format : {TextureFormat::png, TextureFormat::webp})
+      EXPECT_GE(encode_to_psnr(image, format, 30).psnr_db, 30) << channels;
+  }
+}
+
+TEST(EncodeToPsnr, OneTexel) {
+  for (const TextureFormat format : {TextureFormat::png, TextureFormat::jpeg, TextureFormat::webp})
+    EXPECT_FALSE(encode_to_psnr(even(1, 1), format, 40).bytes.empty());
+}
+
+}  // namespace
+}  // namespace fovea
