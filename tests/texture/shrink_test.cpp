@@ -1,0 +1,183 @@
+#include "fovea/texture/shrink.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "fovea/base/error.h"
+#include "fovea/base/random.h"
+#include "fovea/io/image_codec.h"
+#include "fovea/texture/image_use.h"
+#include "support/pictures.h"
+#include "support/reading.h"
+
+namespace fovea {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = TexelMeaning::Kind;
+
+/// What photographs have and formulas lack: no row is like another, so that files shrink with their images.
+Image8 picture(int width, int height) {
+  Image8 image = test::pattern(width, height);
+  Random random(11);
+  for (std::uint8_t& x : image.pixels) x = static_cast<std::uint8_t>(x / 2 + 100 * random.uniform());
+  return image;
+}
+
+EncodedImage png(const Image8& image) { return {"", "image/png", "", encode_png(image), ""}; }
+
+Image8 with_alpha(int size, std::uint8_t alpha) {
+  Image8 image(size, size, 4, ColorEncoding::srgb);
+  const Image8 colors = picture(size, size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      std::copy_n(colors.at(x, y), 3, image.at(x, y));
+      image.at(x, y)[3] = x < size / 2 ? 255 : alpha;
+    }
+  }
+  return image;
+}
+
+/// A material whose base colour is image 0 and whose normal map is image 1.
+Model two_images() {
+  Model model;
+  model.images = {png(picture(64, 32)), png(picture(40, 40))};
+  model.textures = {{0, 0, "", ""}, {1, -1, "", ""}};
+  model.samplers = {{Wrap::clamp, Wrap::mirror, {}, {}, ""}};
+  Material material;
+  material.base_color = TextureRef{0, 0, {}};
+  material.normal = TextureRef{1, 0, {}};
+  model.materials = {material};
+  return model;
+}
+
+Shrunk shrink(const Model& model, const ShrinkOptions& options) {
+  Context context;
+  return shrink_textures(model, options, context);
+}
+
+TEST(ImageUses, AreThoseOfAllMaterials) {
+  Model model = two_images();
+  model.images.push_back(png(picture(4, 4)));
+  Material mask;
+  mask.base_color = TextureRef{0, 0, {}};
+  mask.alpha_mode = AlphaMode::mask;
+  mask.alpha_cutoff = 0.3;
+  mask.json = R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatNormalTexture": {"index": 1}}}})";
+  model.materials.push_back(mask);
+  const std::vector<ImageUse> uses = image_uses(model);
+  EXPECT_EQ(uses[0].meaning.kind, Kind::color);
+  EXPECT_TRUE(uses[0].alpha_counts);
+  EXPECT_EQ(uses[0].meaning.alpha_cutoff, 0.3);
+  // The first material shows what alpha hides in the other.
+  EXPECT_FALSE(uses[0].meaning.transparent);
+  EXPECT_EQ(uses[0].wrap_u, Wrap::clamp);
+  EXPECT_EQ(uses[0].wrap_v, Wrap::mirror);
+  EXPECT_EQ(uses[1].meaning.kind, Kind::normal);
+  EXPECT_FALSE(uses[1].is_ambiguous);
+  EXPECT_EQ(uses[1].wrap_u, Wrap::repeat);  // no sampler
+  EXPECT_FALSE(uses[2].is_used);
+}
+
+TEST(ImageUses, DifferentMeaningsAreAmbiguous) {
+  Model model = two_images();
+  model.materials[0].emissive = TextureRef{1, 0, {}};
+  EXPECT_TRUE(image_uses(model)[1].is_ambiguous);
+  model = two_images();
+  model.materials[0].json = R"({"extensions": {"KHR_materials_sheen": {"sheenColorTexture": {"index": 0}}}})";
+  EXPECT_FALSE(image_uses(model)[0].is_ambiguous);
+}
+
+TEST(ImageUses, NonsenseInExtensionsIsPassedOver) {
+  for (const char* json :
+       {"", "{", "[]", R"({"extensions": 3})", R"({"extensions": {"X": {"aTexture": {"index": 99}}}})",
+        R"({"extensions": {"X": {"aTexture": {"index": "0"}, "bTexture": 4}}})"}) {
+    Model model = two_images();
+    model.materials[0].json = json;
+    EXPECT_FALSE(image_uses(model)[0].is_ambiguous) << json;
+  }
+}
+
+TEST(ShrinkTextures, NothingAskedChangesNothing) {
+  const Model model = two_images();
+  const Shrunk found = shrink(model, {});
+  EXPECT_EQ(found.model.images, model.images);
+  EXPECT_EQ(found.images[0].after.bytes, found.images[0].before.bytes);
+  EXPECT_EQ(found.images[0].kept_because, "");
+}
+
+TEST(ShrinkTextures, SidesAreScaledAndLimited) {
+  ShrinkOptions options;
+  options.scale = 0.5;
+  options.max_side = 16;
+  const Shrunk found = shrink(two_images(), options);
+  const ImageInfo color = image_info(found.model.images[0].bytes),
+                  normal = image_info(found.model.images[1].bytes);
+  EXPECT_EQ(color.width, 16);
+  EXPECT_EQ(color.height, 8);
+  EXPECT_EQ(normal.width, 16);
+  EXPECT_EQ(found.images[1].after.width, 16);
+  EXPECT_EQ(found.images[0].after.bytes, found.model.images[0].bytes.size());
+  EXPECT_LT(found.images[0].after.bytes, found.images[0].before.bytes);
+  options.scale = 1e-4;
+  EXPECT_EQ(image_info(shrink(two_images(), options).model.images[0].bytes).width, 1);
+}
+
+TEST(ShrinkTextures, FormatsFollowAlphaThatCounts) {
+  Model model = two_images();
+  model.images[0] = png(with_alpha(64, 0));
+  ShrinkOptions options;
+  options.format = TextureOutput::jpeg;
+  options.psnr_db = 30;
+  options.scale = 0.5;
+  EXPECT_EQ(shrink(model, options).model.images[0].mime_type, "image/jpeg");  // opaque: nobody reads alpha
+  model.materials[0].alpha_mode = AlphaMode::blend;
+  EXPECT_EQ(shrink(model, options).model.images[0].mime_type, "image/png");
+  options.format = TextureOutput::webp;
+  const Model webp = shrink(model, options).model;
+  EXPECT_EQ(webp.images[0].mime_type, "image/webp");
+  EXPECT_EQ(image_info(webp.images[0].bytes).channels, 4);
+}
+
+TEST(ShrinkTextures, FilesNeverGrow) {
+  Model model = two_images();
+  model.images[0] = {"", "image/jpeg", "", encode_jpeg(picture(64, 32), 20), ""};
+  ShrinkOptions options;
+  options.format = TextureOutput::png;
+  const Shrunk same = shrink(model, options);
+  EXPECT_EQ(same.model.images[0], model.images[0]);
+  EXPECT_THAT(same.images[0].kept_because, HasSubstr("larger"));
+  options = {};
+  options.scale = 0.95;
+  options.psnr_db = 60;
+  const Shrunk smaller = shrink(model, options);
+  EXPECT_LT(smaller.model.images[0].bytes.size(), model.images[0].bytes.size());
+  EXPECT_EQ(image_info(smaller.model.images[0].bytes).width, 61);
+}
+
+TEST(ShrinkTextures, WhatCannotBeReadStaysAndTheOthersAreNotLost) {
+  Model model = two_images();
+  model.images[0].bytes.resize(model.images[0].bytes.size() / 2);
+  model.images.push_back({"", "image/ktx2", "", {1, 2, 3}, ""});
+  ShrinkOptions options;
+  options.scale = 0.5;
+  Context context;
+  const Shrunk found = shrink_textures(model, options, context);
+  EXPECT_EQ(found.model.images[0], model.images[0]);
+  EXPECT_EQ(found.model.images[2], model.images[2]);
+  EXPECT_EQ(image_info(found.model.images[1].bytes).width, 20);
+  std::uint64_t told = 0;
+  for (const Diagnostic& diagnostic : context.diagnostics()) told += diagnostic.count;
+  EXPECT_EQ(told, 2u);
+}
+
+TEST(ShrinkTextures, OptionsAreChecked) {
+  ShrinkOptions options;
+  options.scale = 0;
+  test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
+}
+
+}  // namespace
+}  // namespace fovea
