@@ -4,6 +4,7 @@ namespace fovea::cli {
 
 std::unique_ptr<Verb> make_info();
 std::unique_ptr<Verb> make_simplify();
+std::unique_ptr<Verb> make_texture();
 std::unique_ptr<Verb> make_saliency();
 std::unique_ptr<Verb> make_compare();
 std::unique_ptr<Verb> make_render();
@@ -11,7 +12,8 @@ std::unique_ptr<Verb> make_sample();
 
 std::vector<std::unique_ptr<Verb>> make_verbs() {
   std::vector<std::unique_ptr<Verb>> verbs;
-  for (const auto make : {make_info, make_simplify, make_saliency, make_compare, make_render, make_sample})
+  for (const auto make :
+       {make_info, make_simplify, make_texture, make_saliency, make_compare, make_render, make_sample})
     verbs.push_back(make());
   return verbs;
 }

@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "fovea/io/read.h"
+#include "fovea/io/write.h"
+#include "fovea/texture/shrink.h"
+#include "report.h"
+#include "text.h"
+#include "verb.h"
+
+namespace fovea::cli {
+
+namespace {
+
+std::string format_name(const std::string& mime_type) {
+  return mime_type.rfind("image/", 0) == 0 ? mime_type.substr(6) : "unknown";
+}
+
+std::string state_text(const ImageChange::State& s) {
+  return fmt::format("{} × {} {}, {}", s.width, s.height, format_name(s.mime_type), bytes_text(s.bytes));
+}
+
+Json state_json(const ImageChange::State& s) {
+  return {{"mime_type", s.mime_type}, {"width", s.width}, {"height", s.height}, {"bytes", s.bytes}};
+}
+
+std::string name_of(const Model& model, std::size_t image) {
+  const std::string& name = model.images[image].name;
+  return name.empty() ? fmt::format("image {}", image) : printable(name);
+}
+
+class TextureVerb : public Verb {
+ public:
+  VerbText text() const override {
+    return {
+        "texture",
+        "make the textures of a model smaller",
+        "Reads a model and makes its images smaller, in texels and in bytes, each as its materials use it: "
+        "colours are mixed as light, normals keep their length, alpha masks their coverage, and seams of "
+        "repeating textures close. No image's file grows; what cannot be made smaller stays as it was, with "
+        "a "
+        "word why. The meshes are not touched.",
+        {{"fovea texture helmet.glb -o helmet-web.glb --max-texture 1024 --texture-format webp",
+          "No side above 1,024 texels, as WebP."},
+         {"fovea texture chair.glb -o chair-half.glb --texture-scale 0.5",
+          "Half the texels along each side."},
+         {"fovea texture room.gltf -o room-jpeg.gltf --texture-format jpeg --texture-psnr 36",
+          "JPEG, as small as 36 dB allow."}}};
+  }
+
+  void declare(Arguments& arguments) override {
+    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add("Textures", describe(options_));
+    arguments.add("Output", {describe_output(output_)});
+    arguments.add("Output", describe(write_options_));
+    arguments.add("Limits", describe(read_options_));
+  }
+
+  int run(Session& session) override {
+    if (options_.scale == 1 && options_.max_side == 0 && options_.format == TextureOutput::keep) {
+      throw Error(ErrorKind::usage, "nothing is asked for", {},
+                  "give --texture-scale, --max-texture or --texture-format, for example --max-texture 1024");
+    }
+    check_input(input_);
+    check_output(output_, {input_}, write_options_.force);
+    const Model model =
+        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
+    const Snapshot before = snapshot(model, measure_input(input_, model));
+    const Shrunk result =
+        session.phase("textures", [&] { return shrink_textures(model, options_, session.context); });
+    const auto files = session.phase(
+        "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
+    tell(session, before, snapshot(result.model, measure_output(files, result.model)), result);
+    return 0;
+  }
+
+ private:
+  void tell(Session& session, const Snapshot& before, const Snapshot& after, const Shrunk& result) const {
+    session.report["inputs"] = Json::array({file_json(input_, before.bytes)});
+    session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
+    session.report["before"] = to_json(before);
+    session.report["after"] = to_json(after);
+    Json& images = session.report["images"] = Json::array();
+    TextTable table("lll");
+    for (std::size_t i = 0; i < result.images.size(); ++i) {
+      const ImageChange& change = result.images[i];
+      const bool encoded = change.psnr_db != 0;
+      images.push_back({{"image", i},
+                        {"name", result.model.images[i].name},
+                        {"before", state_json(change.before)},
+                        {"after", state_json(change.after)},
+                        {"psnr_db", encoded ? number_json(change.psnr_db) : Json()},
+                        {"kept_because", change.kept_because}});
+      std::string what = "as it was";
+      if (!change.kept_because.empty()) what += ": " + printable(change.kept_because);
+      if (encoded) what = "-> " + state_text(change.after) + encoding_text(change.psnr_db);
+      table.row({name_of(result.model, i), state_text(change.before), what});
+    }
+    session.print_summary(fmt::format("{} -> {}\n{}{}time     {}, peak memory {}\n", printable(input_),
+                                      printable(output_), comparison_text(before, after), table.text(0),
+                                      seconds_text(session.seconds()), bytes_text(peak_memory_bytes())));
+  }
+
+  static std::string encoding_text(double psnr_db) {
+    return std::isfinite(psnr_db) ? fmt::format(" ({:.1f} dB)", psnr_db) : " (without loss)";
+  }
+
+  std::string input_;
+  std::string output_;
+  ShrinkOptions options_;
+  ReadOptions read_options_;
+  WriteOptions write_options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_texture() { return std::make_unique<TextureVerb>(); }
+
+}  // namespace fovea::cli
