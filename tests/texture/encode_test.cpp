@@ -26,7 +26,7 @@ class EncodeToPsnr : public ::testing::TestWithParam<TextureFormat> {};
 TEST_P(EncodeToPsnr, IsAsNearAsAskedAndSaysHowNear) {
   const Image8 image = test::pattern(300, 200);
   for (const double wanted : {25.0, 35.0, 42.0}) {
-    const EncodedTexture found = encode_to_psnr(image, GetParam(), wanted);
+    const EncodedTexture found = encode_to_psnr(image, GetParam(), wanted, Content::data);
     EXPECT_EQ(image_info(found.bytes).mime_type, mime_type(GetParam()));
     EXPECT_GE(found.psnr_db, wanted);
     const double measured = psnr(mean_squared_error(image, decode_image(found.bytes)));
@@ -39,14 +39,14 @@ INSTANTIATE_TEST_SUITE_P(Formats, EncodeToPsnr,
 
 TEST(EncodeToPsnr, IsTheLowestQualityThatIsNearEnough) {
   const Image8 image = test::pattern(300, 200);
-  const EncodedTexture found = encode_to_psnr(image, TextureFormat::jpeg, 35);
+  const EncodedTexture found = encode_to_psnr(image, TextureFormat::jpeg, 35, Content::data);
   ASSERT_GT(found.quality, 1);
   EXPECT_LT(psnr(mean_squared_error(image, decode_image(encode_jpeg(image, found.quality - 1)))), 35);
 }
 
 TEST(EncodeToPsnr, LargeImagesAreMeasuredWhole) {
   const Image8 image = test::pattern(1500, 700);
-  const EncodedTexture found = encode_to_psnr(image, TextureFormat::jpeg, 38);
+  const EncodedTexture found = encode_to_psnr(image, TextureFormat::jpeg, 38, Content::data);
   EXPECT_GE(found.psnr_db, 38);
   EXPECT_DOUBLE_EQ(found.psnr_db, psnr(mean_squared_error(image, decode_image(found.bytes))));
 }
@@ -54,15 +54,15 @@ TEST(EncodeToPsnr, LargeImagesAreMeasuredWhole) {
 // WebP halves the resolution of colours whatever its quality.
 TEST(EncodeToPsnr, WhatNoQualityReachesIsStoredWithoutLoss) {
   const Image8 image = test::pattern(64, 64);
-  const EncodedTexture found = encode_to_psnr(image, TextureFormat::webp, 60);
+  const EncodedTexture found = encode_to_psnr(image, TextureFormat::webp, 60, Content::data);
   EXPECT_EQ(found.quality, 0);
   EXPECT_EQ(decode_image(found.bytes).pixels, image.pixels);
-  EXPECT_EQ(encode_to_psnr(image, TextureFormat::webp, kNoLoss).psnr_db, kNoLoss);
-  EXPECT_EQ(encode_to_psnr(image, TextureFormat::jpeg, kNoLoss).quality, 100);
+  EXPECT_EQ(encode_to_psnr(image, TextureFormat::webp, kNoLoss, Content::data).psnr_db, kNoLoss);
+  EXPECT_EQ(encode_to_psnr(image, TextureFormat::jpeg, kNoLoss, Content::data).quality, 100);
 }
 
 TEST(EncodeToPsnr, EvenColorsAreSmallerWithoutLoss) {
-  const EncodedTexture found = encode_to_psnr(even(800, 600), TextureFormat::webp, 40);
+  const EncodedTexture found = encode_to_psnr(even(800, 600), TextureFormat::webp, 40, Content::data);
   EXPECT_EQ(found.quality, 0);
   EXPECT_EQ(decode_image(found.bytes).pixels, even(800, 600).pixels);
 }
@@ -73,13 +73,27 @@ TEST(EncodeToPsnr, AlphaAndGreyComeThrough) {
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
       image.pixels[i] = static_cast<std::uint8_t>(i * 7 / static_cast<std::size_t>(channels) % 256);
     for (const TextureFormat format : {TextureFormat::png, TextureFormat::webp})
-      EXPECT_GE(encode_to_psnr(image, format, 30).psnr_db, 30) << channels;
+      EXPECT_GE(encode_to_psnr(image, format, 30, Content::data).psnr_db, 30) << channels;
   }
+}
+
+// What a person sees least, a difference of colour alone, counts least.
+TEST(EncodingPsnr, ColorsAreBrightnessMostly) {
+  Image8 grey(8, 8, 3, ColorEncoding::srgb), brighter = grey, bluer = grey;
+  for (std::size_t i = 0; i < grey.pixels.size(); ++i) {
+    grey.pixels[i] = 100;
+    brighter.pixels[i] = 110;
+    bluer.pixels[i] = i % 3 == 2 ? 110 : 100;
+  }
+  EXPECT_NEAR(encoding_psnr(grey, brighter, Content::colors), psnr(100 * 6 / 8.0), 1e-9);
+  EXPECT_GT(encoding_psnr(grey, bluer, Content::colors), encoding_psnr(grey, brighter, Content::colors) + 5);
+  EXPECT_DOUBLE_EQ(encoding_psnr(grey, brighter, Content::data), psnr(100));
+  EXPECT_EQ(encoding_psnr(grey, grey, Content::colors), kNoLoss);
 }
 
 TEST(EncodeToPsnr, OneTexel) {
   for (const TextureFormat format : {TextureFormat::png, TextureFormat::jpeg, TextureFormat::webp})
-    EXPECT_FALSE(encode_to_psnr(even(1, 1), format, 40).bytes.empty());
+    EXPECT_FALSE(encode_to_psnr(even(1, 1), format, 40, Content::data).bytes.empty());
 }
 
 }  // namespace

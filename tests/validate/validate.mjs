@@ -1,9 +1,9 @@
-// Simplifies models with the command line, writes saliency into them, and puts every output through the
-// Khronos glTF validator.
+// Simplifies models with the command line, shrinks their textures, writes saliency into them, and puts every
+// output through the Khronos glTF validator.
 //
 //   node validate.mjs FOVEA OUTPUT-FOLDER sample NAME     a sample model, in every way of writing
-//   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER: at 10 %, as a
-//                                                         heat map and with an attribute
+//   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER: at 10 %, with small
+//                                                         textures, as a heat map and with an attribute
 //
 // Exit status: 0 all valid, 1 something is not, 77 (skipped) if FOVEA_DATA is not set.
 
@@ -77,6 +77,11 @@ function saliencyFault(input, output, kind) {
     after > before || (before > 0 && after === 0) ? `${after} triangles instead of ${before}` : null);
 }
 
+function textureFault(input, output, ...options) {
+  return faultOf(input, output, ['texture', ...options], (before, after) =>
+    after > before || (before > 0 && after === 0) ? `${after} triangles instead of ${before}` : null);
+}
+
 async function report(label, check) {
   const fault = await check;
   console.log(`${fault ? 'BAD ' : 'ok  '} ${label}${fault ? `\n    ${fault}` : ''}`);
@@ -109,6 +114,14 @@ async function sampleFaults() {
       faults += await report(path.basename(output), saliencyFault(input, output, kind));
     }
   }
+  for (const [suffix, ...options] of [
+    ['half.glb', '--texture-scale', '0.5'],
+    ['webp.gltf', '--texture-format', 'webp', '--texture-psnr', '30'],
+    ['jpeg.glb', '--texture-format', 'jpeg', '--texture-psnr', '34'],
+  ]) {
+    const output = path.join(outputFolder, `${name}-${suffix}`);
+    faults += await report(path.basename(output), textureFault(input, output, ...options));
+  }
   return faults;
 }
 
@@ -121,6 +134,7 @@ async function corpusFaults() {
     const input = path.join(folder, file);
     const output = path.join(outputFolder, file.replaceAll(path.sep, '_').replace(/\.gltf$/, '.glb'));
     faults += await report(file, simplifyFault(input, output, 0.1));
+    faults += await report(`${file}, textures`, textureFault(input, output, '--texture-format', 'webp', '--max-texture', '128', '--texture-psnr', '30'));
     for (const kind of ['heat', 'attribute'])
       faults += await report(`${file}, ${kind}`, saliencyFault(input, output.replace(/\.glb$/, `-${kind}.glb`), kind));
   }

@@ -41,10 +41,10 @@ Image8 with_channels(const Image8& image, int channels) {
   return result;
 }
 
-EncodedTexture measured(const Image8& image, TextureFormat format, int quality) {
+EncodedTexture measured(const Image8& image, TextureFormat format, int quality, Content content) {
   EncodedTexture result{encoded(image, format, quality), quality, 0};
   const Image8 decoded = with_channels(decode_image(result.bytes), image.channels);
-  result.psnr_db = psnr(mean_squared_error(image, decoded));
+  result.psnr_db = encoding_psnr(image, decoded, content);
   return result;
 }
 
@@ -70,11 +70,11 @@ Image8 excerpt(const Image8& image) {
 }
 
 /// The lowest quality of 1 … 100 at which an image is near enough, or 100.
-int lowest_quality(const Image8& image, TextureFormat format, double least_psnr_db) {
+int lowest_quality(const Image8& image, TextureFormat format, double least_psnr_db, Content content) {
   int low = 1, high = 100;
   while (low < high) {
     const int middle = (low + high) / 2;
-    if (measured(image, format, middle).psnr_db >= least_psnr_db) {
+    if (measured(image, format, middle, content).psnr_db >= least_psnr_db) {
       high = middle;
     } else {
       low = middle + 1;
@@ -94,18 +94,35 @@ std::string mime_type(TextureFormat format) {
   throw Error(ErrorKind::internal, "an unknown format of textures");
 }
 
-EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db) {
+double encoding_psnr(const Image8& a, const Image8& b, Content content) {
+  if (content == Content::data || a.channels < 3) return psnr(mean_squared_error(a, b));
+  check_same_shape(a, b);
+  double colors = 0, alpha = 0;
+  const auto step = static_cast<std::size_t>(a.channels);
+  for (std::size_t i = 0; i < a.pixels.size(); i += step) {
+    const auto off = [&](std::size_t k) { return static_cast<double>(a.pixels[i + k]) - b.pixels[i + k]; };
+    const double y = 0.299 * off(0) + 0.587 * off(1) + 0.114 * off(2);
+    const double cb = 0.564 * (off(2) - y), cr = 0.713 * (off(0) - y);
+    colors += (6 * y * y + cb * cb + cr * cr) / 8;
+    if (step == 4) alpha += off(3) * off(3);
+  }
+  const double texels = static_cast<double>(a.pixels.size() / step);
+  return psnr((step == 4 ? (3 * colors + alpha) / 4 : colors) / texels);
+}
+
+EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
+                              Content content) {
   const auto without_loss = [&] { return EncodedTexture{encoded(image, format, 0), 0, kNoLoss}; };
   if (format == TextureFormat::png) return without_loss();
   if (!std::isfinite(least_psnr_db))
-    return format == TextureFormat::webp ? without_loss() : measured(image, format, 100);
+    return format == TextureFormat::webp ? without_loss() : measured(image, format, 100, content);
   const Image8 part = excerpt(image);
-  int quality = lowest_quality(part, format, least_psnr_db);
-  EncodedTexture result = measured(image, format, quality);
+  int quality = lowest_quality(part, format, least_psnr_db, content);
+  EncodedTexture result = measured(image, format, quality, content);
   // The excerpt is not the whole: some steps more may be needed.
   while (result.psnr_db < least_psnr_db && quality < 100) {
     quality = std::min(quality + 2, 100);
-    result = measured(image, format, quality);
+    result = measured(image, format, quality, content);
   }
   if (format == TextureFormat::jpeg) return result;
   if (result.psnr_db < least_psnr_db) return without_loss();

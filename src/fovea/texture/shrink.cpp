@@ -62,13 +62,31 @@ TextureFormat format_of(const std::string& type, TextureOutput wanted, bool alph
   return type == "image/jpeg" && !alpha ? TextureFormat::jpeg : TextureFormat::png;
 }
 
+struct Encoded {
+  EncodedTexture texture;
+  TextureFormat format;
+};
+
+/// As asked for, except that WebP, which halves the resolution of colours, gives way to JPEG, which need not,
+/// where it could be near enough only without loss.
+Encoded encode(const Image8& image, TextureFormat format, double psnr_db, Content content) {
+  Encoded result{encode_to_psnr(image, format, psnr_db, content), format};
+  if (format != TextureFormat::webp || result.texture.quality > 0 || has_alpha(image) ||
+      !std::isfinite(psnr_db))
+    return result;
+  EncodedTexture jpeg = encode_to_psnr(image, TextureFormat::jpeg, psnr_db, content);
+  if (jpeg.psnr_db >= psnr_db && jpeg.bytes.size() < result.texture.bytes.size())
+    result = {std::move(jpeg), TextureFormat::jpeg};
+  return result;
+}
+
 /// The nearest encoding that is smaller than `bytes`; none if the format has no quality to lower.
-std::optional<EncodedTexture> encode_below(const Image8& image, TextureFormat format, double psnr_db,
-                                           std::size_t bytes) {
+std::optional<Encoded> encode_below(const Image8& image, TextureFormat format, double psnr_db,
+                                    Content content, std::size_t bytes) {
   constexpr double kStep = 3, kLeast = 20;  // dB; below, an image is no longer that image
   for (; psnr_db >= kLeast; psnr_db -= kStep) {
-    EncodedTexture result = encode_to_psnr(image, format, psnr_db);
-    if (result.bytes.size() < bytes) return result;
+    Encoded result = encode(image, format, psnr_db, content);
+    if (result.texture.bytes.size() < bytes) return result;
     if (format == TextureFormat::png) return std::nullopt;
   }
   return std::nullopt;
@@ -106,13 +124,14 @@ Outcome shrunk(const EncodedImage& image, const ImageUse& use, const ShrinkOptio
     const TextureFormat format = format_of(before.mime_type, options.format, has_alpha(picture));
     const double psnr =
         options.psnr_db >= kMostPsnr ? std::numeric_limits<double>::infinity() : options.psnr_db;
-    std::optional<EncodedTexture> encoded = encode_to_psnr(picture, format, psnr);
-    if (encoded->bytes.size() >= before.bytes)
-      encoded = encode_below(picture, format, std::min(psnr, kMostPsnr), before.bytes);
+    const Content content = use.meaning.kind == TexelMeaning::Kind::color ? Content::colors : Content::data;
+    std::optional<Encoded> encoded = encode(picture, format, psnr, content);
+    if (encoded->texture.bytes.size() >= before.bytes)
+      encoded = encode_below(picture, format, std::min(psnr, kMostPsnr), content, before.bytes);
     if (!encoded) return kept(image, fmt::format("as {} it would be larger", mime_type(format).substr(6)));
-    outcome.change.after = {mime_type(format), width, height, encoded->bytes.size()};
-    outcome.change.psnr_db = encoded->psnr_db;
-    outcome.bytes = std::move(encoded->bytes);
+    outcome.change.after = {mime_type(encoded->format), width, height, encoded->texture.bytes.size()};
+    outcome.change.psnr_db = encoded->texture.psnr_db;
+    outcome.bytes = std::move(encoded->texture.bytes);
     return outcome;
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::cancelled) throw;

@@ -1,0 +1,77 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fovea/io/image_codec.h"
+#include "fovea/io/read.h"
+#include "run_command.h"
+
+namespace fovea::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class TextureVerb : public ::testing::Test {
+ protected:
+  TextureVerb() { fovea({"sample", "vase", "-o", vase_, "--detail", "0.05"}); }
+
+  std::string out(const std::string& name) const { return folder_ / name; }
+  static Outcome texture(std::vector<std::string> words) {
+    words.insert(words.begin(), "texture");
+    return fovea(words);
+  }
+  static Model model(const std::string& path) {
+    Context context;
+    return read_model(path, {}, context);
+  }
+
+  Folder folder_;
+  std::string vase_ = folder_ / "vase.glb";
+};
+
+TEST_F(TextureVerb, MakesImagesSmallerAndSaysSo) {
+  const Outcome outcome = texture({vase_, "-o", out("small.glb"), "--max-texture", "128", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  const Model before = model(vase_), after = model(out("small.glb"));
+  ASSERT_EQ(json["images"].size(), before.images.size());
+  EXPECT_EQ(image_info(after.images[0].bytes).width, 128);
+  EXPECT_EQ(json["images"][0]["after"]["width"], 128);
+  EXPECT_EQ(json["images"][0]["before"]["bytes"], before.images[0].bytes.size());
+  EXPECT_EQ(json["images"][0]["after"]["bytes"], after.images[0].bytes.size());
+  EXPECT_EQ(json["before"]["triangles"], json["after"]["triangles"]);
+  EXPECT_EQ(json["outputs"][0]["bytes"], std::filesystem::file_size(out("small.glb")));
+}
+
+TEST_F(TextureVerb, WebpNeedsItsExtension) {
+  ASSERT_EQ(texture({vase_, "-o", out("webp.gltf"), "--texture-format", "webp", "--texture-psnr", "30"}).code,
+            0);
+  EXPECT_THAT(read_text(out("webp.gltf")), HasSubstr("EXT_texture_webp"));
+  EXPECT_EQ(model(out("webp.gltf")).images[0].mime_type, "image/webp");
+}
+
+TEST_F(TextureVerb, NothingAskedIsAnError) {
+  const Outcome outcome = texture({vase_, "-o", out("same.glb")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--max-texture"));
+  EXPECT_FALSE(std::filesystem::exists(out("same.glb")));
+}
+
+TEST_F(TextureVerb, ValuesOutOfRangeAreRefused) {
+  for (const auto& [option, value] : {std::pair{"--texture-scale", "0"},
+                                      {"--texture-scale", "1.5"},
+                                      {"--max-texture", "-3"},
+                                      {"--texture-psnr", "5"},
+                                      {"--texture-format", "gif"}}) {
+    const Outcome outcome = texture({vase_, "-o", out("bad.glb"), option, value});
+    EXPECT_EQ(outcome.code, 2) << option << value;
+    EXPECT_THAT(outcome.err, HasSubstr(option));
+  }
+}
+
+TEST_F(TextureVerb, AModelWithoutTexturesComesThrough) {
+  const std::string square = folder_.write("square.obj", square_obj());
+  EXPECT_EQ(texture({square, "-o", out("square.glb"), "--texture-scale", "0.5"}).code, 0);
+}
+
+}  // namespace
+}  // namespace fovea::test
