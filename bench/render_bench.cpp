@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "fovea/base/error.h"
-#include "fovea/judge/psnr.h"
+#include "fovea/model/image_error.h"
 #include "fovea/render/render.h"
 #include "measure.h"
 #include "render_peers.h"

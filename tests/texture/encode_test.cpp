@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "fovea/io/image_codec.h"
-#include "fovea/judge/psnr.h"
+#include "fovea/model/image_error.h"
 #include "support/pictures.h"
 
 namespace fovea {

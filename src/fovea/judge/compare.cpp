@@ -2,8 +2,9 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
-#include "fovea/judge/psnr.h"
+#include "fovea/judge/silhouette.h"
 #include "fovea/judge/ssim.h"
+#include "fovea/model/image_error.h"
 
 namespace fovea {
 
@@ -26,7 +27,7 @@ ImageScores score(const PreparedPicture& reference, const Picture& test, const P
                   const Plane& mask) {
   ImageScores s;
   s.mse = mean_squared_error(reference.picture.color, test.color);
-  s.mse_foreground = mean_squared_error(reference.picture.color, test.color, &mask);
+  s.mse_foreground = mean_squared_error(reference.picture.color, test.color, mask.values);
   s.psnr = psnr(s.mse);
   s.psnr_foreground = psnr(s.mse_foreground);
   const SsimScores ssim = reference.ssim.score(test.color, &mask);

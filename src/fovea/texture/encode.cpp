@@ -6,7 +6,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/io/image_codec.h"
-#include "fovea/judge/psnr.h"
+#include "fovea/model/image_error.h"
 
 namespace fovea {
 

@@ -1,6 +1,5 @@
-#include "fovea/judge/psnr.h"
+#include "fovea/model/image_error.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -14,12 +13,12 @@ void check_same_shape(const Image8& a, const Image8& b) {
     throw Error(ErrorKind::usage, "images of different size or channels cannot be compared");
 }
 
-double mean_squared_error(const Image8& a, const Image8& b, const Plane* mask) {
+double mean_squared_error(const Image8& a, const Image8& b, std::span<const float> mask) {
   check_same_shape(a, b);
   const auto channels = static_cast<std::size_t>(a.channels);
   std::uint64_t sum = 0, count = 0;
   for (std::size_t i = 0; i * channels < a.pixels.size(); ++i) {
-    if (mask != nullptr && !(mask->values[i] > 0)) continue;
+    if (!mask.empty() && !(mask[i] > 0)) continue;
     for (std::size_t k = i * channels; k < (i + 1) * channels; ++k) {
       const int difference = int{a.pixels[k]} - int{b.pixels[k]};
       sum += static_cast<std::uint64_t>(difference * difference);
@@ -31,24 +30,6 @@ double mean_squared_error(const Image8& a, const Image8& b, const Plane* mask) {
 
 double psnr(double mse) {
   return mse > 0 ? 10 * std::log10(255.0 * 255.0 / mse) : std::numeric_limits<double>::infinity();
-}
-
-double silhouette_iou(const Image8& coverage_a, const Image8& coverage_b) {
-  check_same_shape(coverage_a, coverage_b);
-  std::uint64_t both = 0, either = 0;
-  for (std::size_t i = 0; i < coverage_a.pixels.size(); ++i) {
-    both += std::min(coverage_a.pixels[i], coverage_b.pixels[i]);
-    either += std::max(coverage_a.pixels[i], coverage_b.pixels[i]);
-  }
-  return either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 1;
-}
-
-Plane foreground(const Image8& coverage_a, const Image8& coverage_b) {
-  check_same_shape(coverage_a, coverage_b);
-  Plane mask(coverage_a.width, coverage_a.height);
-  for (std::size_t i = 0; i < mask.values.size(); ++i)
-    mask.values[i] = coverage_a.pixels[i] > 0 || coverage_b.pixels[i] > 0 ? 1.0f : 0.0f;
-  return mask;
 }
 
 }  // namespace fovea
