@@ -2,10 +2,11 @@
 
 #include <cmath>
 
-#include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "fovea/texture/shrink.h"
+#include "input.h"
 #include "report.h"
+#include "shared_options.h"
 #include "text.h"
 #include "verb.h"
 
@@ -50,25 +51,22 @@ class TextureVerb : public Verb {
   }
 
   void declare(Arguments& arguments) override {
-    arguments.add({"MODEL", "A model file: glTF, GLB, OBJ, PLY, STL, FBX, ...", &input_});
+    arguments.add(model_argument(input_));
     arguments.add("Textures", describe(options_));
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
+    need_format(arguments, write_options_);
   }
 
   int run(Session& session) override {
-    if (options_.scale == 1 && options_.max_side == 0 && options_.format == TextureOutput::keep) {
-      throw Error(ErrorKind::usage, "nothing is asked for", {},
-                  "give --texture-scale, --max-texture or --texture-format, for example --max-texture 1024");
-    }
-    check_input(input_);
-    check_output(output_, {input_}, write_options_.force);
-    const Model model =
-        session.phase("read", [&] { return read_model(input_, read_options_, session.context); });
-    const Snapshot before = snapshot(model, measure_input(input_, model));
-    const Shrunk result =
-        session.phase("textures", [&] { return shrink_textures(model, options_, session.context); });
+    check_request();
+    const Input input = read_input(session, input_, read_options_);
+    const Snapshot before = snapshot(input.model, input.bytes);
+    session.report["inputs"] = inputs_json({&input, 1});
+    session.report["before"] = to_json(before);
+    const Shrunk result = session.phase(
+        "textures", input_, [&] { return shrink_textures(input.model, options_, session.context); });
     const auto files = session.phase(
         "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
     tell(session, before, snapshot(result.model, measure_output(files, result.model)), result);
@@ -76,10 +74,18 @@ class TextureVerb : public Verb {
   }
 
  private:
+  void check_request() const {
+    if (options_.scale == 1 && options_.max_side == 0 && options_.format == TextureOutput::keep) {
+      throw Error(ErrorKind::usage, "nothing is asked for", {},
+                  "give --texture-scale, --max-texture or --texture-format, for example --max-texture 1024");
+    }
+    check_input(input_);
+    check_output(output_, "small.glb", {input_}, write_options_.force,
+                 [&](const auto& path) { fovea::check_output(path, write_options_); });
+  }
+
   void tell(Session& session, const Snapshot& before, const Snapshot& after, const Shrunk& result) const {
-    session.report["inputs"] = Json::array({file_json(input_, before.bytes)});
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
-    session.report["before"] = to_json(before);
     session.report["after"] = to_json(after);
     Json& images = session.report["images"] = Json::array();
     TextTable table("lll");
@@ -97,9 +103,8 @@ class TextureVerb : public Verb {
       if (encoded) what = "-> " + state_text(change.after) + encoding_text(change.psnr_db);
       table.row({name_of(result.model, i), state_text(change.before), what});
     }
-    session.print_summary(fmt::format("{} -> {}\n{}{}time     {}, peak memory {}\n", printable(input_),
-                                      printable(output_), comparison_text(before, after), table.text(0),
-                                      seconds_text(session.seconds()), bytes_text(peak_memory_bytes())));
+    session.print_summary(fmt::format("{} -> {}\n{}{}time     {}\n", printable(input_), printable(output_),
+                                      comparison_text(before, after), table.text(0), session.spent_text()));
   }
 
   static std::string encoding_text(double psnr_db) {
