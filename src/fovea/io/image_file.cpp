@@ -1,9 +1,9 @@
 #include "fovea/io/image_file.h"
-#include "fovea/base/text.h"
 
 #include <string>
 #include <vector>
 
+#include "fovea/base/text.h"
 #include "fovea/io/extension.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/io/write.h"

@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "fovea/model/texture_use.h"
 
 namespace fovea {
 
@@ -12,6 +15,11 @@ namespace {
 
 using Json = nlohmann::json;
 using Kind = TexelMeaning::Kind;
+
+Kind kind_of(TextureRole role) {
+  if (role == TextureRole::normal) return Kind::normal;
+  return encoding(role) == ColorEncoding::srgb ? Kind::color : Kind::data;
+}
 
 Kind kind_by_name(std::string_view name) {
   constexpr std::array<std::string_view, 5> kColors{"sheenColorTexture", "specularColorTexture",
@@ -25,25 +33,19 @@ class Collector {
  public:
   explicit Collector(const Model& model) : model_(model), uses_(model.images.size()) {}
 
-  void add(const Material& m) {
-    const bool shows_alpha = m.alpha_mode != AlphaMode::opaque;
-    TexelMeaning base{Kind::color, shows_alpha, {}};
-    if (m.alpha_mode == AlphaMode::mask) base.alpha_cutoff = m.alpha_cutoff;
-    add(m.base_color, base, shows_alpha);
-    add(m.metallic_roughness, {Kind::data}, false);
-    add(m.normal, {Kind::normal}, false);
-    add(m.occlusion, {Kind::data}, false);
-    add(m.emissive, {Kind::color}, false);
-    add_extensions(m);
+  void add(const Material& material) {
+    for (const auto& [role, ref] : textures_of(material)) {
+      const bool alpha = role == TextureRole::base_color && material.alpha_mode != AlphaMode::opaque;
+      TexelMeaning meaning{kind_of(role), alpha};
+      if (alpha && material.alpha_mode == AlphaMode::mask) meaning.alpha_cutoff = material.alpha_cutoff;
+      add(ref.texture, meaning, alpha);
+    }
+    add_extensions(material);
   }
 
   std::vector<ImageUse> take() { return std::move(uses_); }
 
  private:
-  void add(const std::optional<TextureRef>& ref, const TexelMeaning& meaning, bool alpha) {
-    if (ref) add(ref->texture, meaning, alpha);
-  }
-
   void add(int texture, const TexelMeaning& meaning, bool alpha) {
     if (texture < 0 || static_cast<std::size_t>(texture) >= model_.textures.size()) return;
     const Texture& t = model_.textures[static_cast<std::size_t>(texture)];
