@@ -253,8 +253,9 @@ class GlScene {
     glUniform1f(at("cutoff"), material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : -1.0f);
     glUniform1i(at("is_opaque"), blended ? 0 : 1);
     const SceneTexture texture = material.base_color_texture.value_or(SceneTexture{});
-    glUniform3f(at("u_row"), texture.xx, texture.xy, texture.x);
-    glUniform3f(at("v_row"), texture.yx, texture.yy, texture.y);
+    const UvMatrixf& m = texture.matrix;
+    glUniform3f(at("u_row"), m.u.x, m.v.x, m.offset.x);
+    glUniform3f(at("v_row"), m.u.y, m.v.y, m.offset.y);
     glBindTexture(GL_TEXTURE_2D, batch.texture);
     const auto wrap = [](Wrap w) {
       return w == Wrap::repeat ? GL_REPEAT : w == Wrap::mirror ? GL_MIRRORED_REPEAT : GL_CLAMP_TO_EDGE;
