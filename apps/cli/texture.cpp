@@ -53,6 +53,7 @@ class TextureVerb : public Verb {
   void declare(Arguments& arguments) override {
     arguments.add(model_argument(input_));
     arguments.add("Textures", describe(options_));
+    arguments.add("Warp", describe(options_.warp));
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
@@ -66,7 +67,7 @@ class TextureVerb : public Verb {
     session.report["inputs"] = inputs_json({&input, 1});
     session.report["before"] = to_json(before);
     const Shrunk result = session.phase(
-        "textures", input_, [&] { return shrink_textures(input.model, options_, session.context); });
+        "textures", input_, [&] { return shrink_textures(input.model, options_, {}, session.context); });
     const auto files = session.phase(
         "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
     tell(session, before, snapshot(result.model, measure_output(files, result.model)), result);
@@ -75,7 +76,7 @@ class TextureVerb : public Verb {
 
  private:
   void check_request() const {
-    if (options_.scale == 1 && options_.max_side == 0 && options_.format == TextureOutput::keep) {
+    if (options_.scale == 1 && options_.max_side == 0 && options_.output.format == TextureOutput::keep) {
       throw Error(ErrorKind::usage, "nothing is asked for", {},
                   "give --texture-scale, --max-texture or --texture-format, for example --max-texture 1024");
     }
@@ -103,8 +104,32 @@ class TextureVerb : public Verb {
       if (encoded) what = "-> " + state_text(change.after) + encoding_text(change.psnr_db);
       table.row({name_of(result.model, i), state_text(change.before), what});
     }
-    session.print_summary(fmt::format("{} -> {}\n{}{}time     {}\n", printable(input_), printable(output_),
-                                      comparison_text(before, after), table.text(0), session.spent_text()));
+    session.print_summary(fmt::format("{} -> {}\n{}{}{}time     {}\n", printable(input_), printable(output_),
+                                      comparison_text(before, after), table.text(0),
+                                      tell_atlases(session, result.atlases), session.spent_text()));
+  }
+
+  static std::string tell_atlases(Session& session, const std::vector<AtlasChange>& atlases) {
+    Json& list = session.report["atlases"] = Json::array();
+    std::string text;
+    for (const AtlasChange& atlas : atlases) {
+      const bool measured = atlas.plain_loss > 0;
+      list.push_back({{"images", atlas.images},
+                      {"fixed_because", atlas.fixed_because},
+                      {"strength", atlas.strength},
+                      {"rounds", atlas.rounds},
+                      {"last_move_cells", atlas.last_move},
+                      {"settled", atlas.settled},
+                      {"loss", measured ? number_json(atlas.loss) : Json()},
+                      {"plain_loss", measured ? number_json(atlas.plain_loss) : Json()}});
+      const std::string what = atlas.fixed_because.empty()
+                                   ? fmt::format("moved, which loses {:.0f} % of what resizing alone would",
+                                                 100 * atlas.loss / atlas.plain_loss)
+                                   : fmt::format("not moved: {}", printable(atlas.fixed_because));
+      text += fmt::format("texels   of image{} {}: {}\n", atlas.images.size() > 1 ? "s" : "",
+                          fmt::join(atlas.images, ", "), what);
+    }
+    return text;
   }
 
   static std::string encoding_text(double psnr_db) {

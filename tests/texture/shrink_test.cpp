@@ -55,7 +55,7 @@ Model two_images() {
 
 Shrunk shrink(const Model& model, const ShrinkOptions& options) {
   Context context;
-  return shrink_textures(model, options, context);
+  return shrink_textures(model, options, {}, context);
 }
 
 TEST(ImageUses, AreThoseOfAllMaterials) {
@@ -129,13 +129,13 @@ TEST(ShrinkTextures, FormatsFollowAlphaThatCounts) {
   Model model = two_images();
   model.images[0] = png(with_alpha(64, 0));
   ShrinkOptions options;
-  options.format = TextureOutput::jpeg;
-  options.psnr_db = 30;
+  options.output.format = TextureOutput::jpeg;
+  options.output.psnr_db = 30;
   options.scale = 0.5;
   EXPECT_EQ(shrink(model, options).model.images[0].mime_type, "image/jpeg");  // opaque: nobody reads alpha
   model.materials[0].alpha_mode = AlphaMode::blend;
   EXPECT_EQ(shrink(model, options).model.images[0].mime_type, "image/png");
-  options.format = TextureOutput::webp;
+  options.output.format = TextureOutput::webp;
   const Model webp = shrink(model, options).model;
   EXPECT_EQ(webp.images[0].mime_type, "image/webp");
   EXPECT_EQ(image_info(webp.images[0].bytes).channels, 4);
@@ -145,13 +145,13 @@ TEST(ShrinkTextures, FilesNeverGrow) {
   Model model = two_images();
   model.images[0] = {"", "image/jpeg", "", encode_jpeg(picture(64, 32), 20), ""};
   ShrinkOptions options;
-  options.format = TextureOutput::png;
+  options.output.format = TextureOutput::png;
   const Shrunk same = shrink(model, options);
   EXPECT_EQ(same.model.images[0], model.images[0]);
   EXPECT_THAT(same.images[0].kept_because, HasSubstr("larger"));
   options = {};
   options.scale = 0.95;
-  options.psnr_db = 60;
+  options.output.psnr_db = 60;
   const Shrunk smaller = shrink(model, options);
   EXPECT_LT(smaller.model.images[0].bytes.size(), model.images[0].bytes.size());
   EXPECT_EQ(image_info(smaller.model.images[0].bytes).width, 61);
@@ -164,7 +164,7 @@ TEST(ShrinkTextures, WhatCannotBeReadStaysAndTheOthersAreNotLost) {
   ShrinkOptions options;
   options.scale = 0.5;
   Context context;
-  const Shrunk found = shrink_textures(model, options, context);
+  const Shrunk found = shrink_textures(model, options, {}, context);
   EXPECT_EQ(found.model.images[0], model.images[0]);
   EXPECT_EQ(found.model.images[2], model.images[2]);
   EXPECT_EQ(image_info(found.model.images[1].bytes).width, 20);

@@ -18,9 +18,7 @@ struct ImageUse {
   Wrap wrap_u = Wrap::clamp, wrap_v = Wrap::clamp;  ///< Repeating wins over mirroring and that over clamping.
 };
 
-/// [#images] Looks at the core's textures and at those of material extensions, which are the objects whose
-/// names end in "Texture": normal maps if that is in the name, colours for those that Khronos' extensions
-/// define in sRGB (sheen, specular, diffuse and diffuse transmission), else data.
+/// [#images] Over all reads of all materials (texture_read.h).
 std::vector<ImageUse> image_uses(const Model& model);
 
 }  // namespace fovea

@@ -5,25 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/io/image_codec.h"
+#include "fovea/model/check_fields.h"
+#include "fovea/texture/bake.h"
 #include "fovea/texture/image_use.h"
 
 namespace fovea {
 
 namespace {
 
-/// As near as no encoder is asked to be: without loss.
-constexpr double kMostPsnr = 99;
-
-ImageChange::State state_of(const EncodedImage& image) {
-  const ImageInfo info = image_info(image.bytes);
-  return {info.mime_type.empty() ? image.mime_type : info.mime_type, info.width, info.height,
-          image.bytes.size()};
-}
+/// Most texels of an atlas's images together whose texels move: all are in memory at once.
+constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 
 /// Width and height that an image should have.
 std::array<int, 2> wanted_size(const ImageChange::State& image, const ShrinkOptions& options) {
@@ -34,144 +32,204 @@ std::array<int, 2> wanted_size(const ImageChange::State& image, const ShrinkOpti
   return {side(image.width), side(image.height)};
 }
 
-bool has_alpha(const Image8& image) { return image.channels == 2 || image.channels == 4; }
+WarpAim aim_of(TexelMoves moves) {
+  if (moves == TexelMoves::saliency) return WarpAim::saliency;
+  return moves == TexelMoves::frequency ? WarpAim::frequency : WarpAim::balanced;
+}
 
-bool is_opaque(const Image8& image) {
-  const auto step = static_cast<std::size_t>(image.channels);
-  for (std::size_t i = step - 1; i < image.pixels.size(); i += step) {
-    if (image.pixels[i] != 255) return false;
+/// Makes images smaller, one atlas after the other; the model changes as it goes.
+class Shrinker {
+ public:
+  Shrinker(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
+           Context& context)
+      : options_(options),
+        field_(field),
+        context_(context),
+        uses_(image_uses(model)),
+        result_{model, {}, {}} {
+    for (const EncodedImage& image : model.images) {
+      ImageChange& change = result_.images.emplace_back();
+      change.before = change.after = state_of(image);
+    }
   }
-  return true;
-}
 
-Image8 without_alpha(const Image8& image) {
-  Image8 result(image.width, image.height, image.channels - 1, image.encoding);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) std::copy_n(image.at(x, y), result.channels, result.at(x, y));
-  return result;
-}
-
-TextureFormat format_of(const std::string& type, TextureOutput wanted, bool alpha) {
-  switch (wanted) {
-    case TextureOutput::webp: return TextureFormat::webp;
-    case TextureOutput::png: return TextureFormat::png;
-    case TextureOutput::jpeg: return alpha ? TextureFormat::png : TextureFormat::jpeg;
-    case TextureOutput::keep: break;
+  /// All images of an atlas, or each for itself where they cannot be handled together.
+  void shrink(const Atlas& atlas) {
+    std::vector<int> changing;
+    for (const int image : atlas.images) {
+      if (is_to_change(image)) changing.push_back(image);
+    }
+    if (changing.empty()) return;
+    AtlasChange& change = result_.atlases.emplace_back();
+    change.images = atlas.images;
+    change.fixed_because = atlas.fixed_because;
+    if (change.fixed_because.empty() && texels(atlas) > kMostTexels)
+      change.fixed_because = "its images are too large to be in memory together";
+    if (change.fixed_because.empty() && options_.moves == TexelMoves::none)
+      change.fixed_because = "not asked for";
+    if (change.fixed_because.empty()) change.fixed_because = move(atlas, change);
+    if (change.fixed_because.empty()) return;
+    const bool fill = atlas.fixed_because.empty();
+    const std::vector<AtlasFace> faces = fill ? atlas_faces(result_.model, atlas) : std::vector<AtlasFace>{};
+    for (const int image : changing) resize(image, faces);
   }
-  if (type == "image/webp") return TextureFormat::webp;
-  return type == "image/jpeg" && !alpha ? TextureFormat::jpeg : TextureFormat::png;
-}
 
-struct Encoded {
-  EncodedTexture texture;
-  TextureFormat format;
+  void keep(int image, const std::string& why) {
+    result_.images[index(image)].kept_because = why;
+    context_.report("image-kept", fmt::format("stays as it is: {}", why), fmt::format("image {}", image));
+  }
+
+  Shrunk take() { return std::move(result_); }
+
+ private:
+  static std::size_t index(int image) { return static_cast<std::size_t>(image); }
+  const ImageChange::State& before(int image) const { return result_.images[index(image)].before; }
+
+  bool is_smaller(int image) const {
+    const auto [width, height] = wanted_size(before(image), options_);
+    return width != before(image).width || height != before(image).height;
+  }
+
+  /// Says why if it should but cannot.
+  bool is_to_change(int image) {
+    if (before(image).width < 1) {
+      keep(image, "it cannot be decoded");
+      return false;
+    }
+    if (!is_smaller(image) && keeps_format(before(image).mime_type, options_.output)) return false;
+    if (uses_[index(image)].is_ambiguous) {
+      keep(image, "materials read it in different ways");
+      return false;
+    }
+    return true;
+  }
+
+  std::int64_t texels(const Atlas& atlas) const {
+    std::int64_t sum = 0;
+    for (const int image : atlas.images) sum += std::int64_t{before(image).width} * before(image).height;
+    return sum;
+  }
+
+  Image8 decoded(int image) const {
+    return without_idle_alpha(decode_image(result_.model.images[index(image)].bytes), uses_[index(image)]);
+  }
+
+  std::optional<ImageOutput> encoded(int image, const Image8& picture) const {
+    return encode_output(picture, uses_[index(image)], before(image).mime_type, before(image).bytes,
+                         options_.output);
+  }
+
+  void set(int image, ImageOutput output, int width, int height) {
+    ImageChange& change = result_.images[index(image)];
+    change.after = {mime_type(output.format), width, height, output.texture.bytes.size()};
+    change.psnr_db = output.texture.psnr_db;
+    EncodedImage& file = result_.model.images[index(image)];
+    file.mime_type = change.after.mime_type;
+    file.bytes = std::move(output.texture.bytes);
+  }
+
+  /// Why it did not, or nothing.
+  std::string move(const Atlas& atlas, AtlasChange& change) {
+    if (std::ranges::none_of(atlas.images, [&](int image) { return is_smaller(image); }))
+      return "no image gets fewer texels";
+    try {
+      const std::vector<AtlasFace> faces = atlas_faces(result_.model, atlas);
+      std::vector<Image8> pictures;
+      for (const int image : atlas.images) {
+        pictures.push_back(decoded(image));
+        fill_between(pictures.back(), faces, context_);
+      }
+      std::vector<WarpedImage> wanted;
+      for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const auto [width, height] = wanted_size(before(atlas.images[i]), options_);
+        wanted.push_back({&pictures[i], uses_[index(atlas.images[i])].meaning, width, height});
+      }
+      AtlasWarp warp = warp_atlas(result_.model, atlas, wanted, field_, aim_of(options_.moves), options_.warp,
+                                  options_.moves == TexelMoves::balanced, context_);
+      change.rounds = warp.warp.rounds;
+      change.last_move = warp.warp.last_move;
+      change.settled = warp.warp.settled;
+      change.loss = warp.loss;
+      change.plain_loss = warp.plain_loss;
+      if (warp.strength == 0) return "it would gain nothing";
+      std::vector<ImageOutput> outputs;
+      for (std::size_t i = 0; i < pictures.size(); ++i) {
+        std::optional<ImageOutput> output = encoded(atlas.images[i], warp.images[i]);
+        if (!output) return fmt::format("image {} would become larger", atlas.images[i]);
+        outputs.push_back(std::move(*output));
+      }
+      change.strength = warp.strength;
+      result_.model = std::move(warp.model);
+      for (std::size_t i = 0; i < outputs.size(); ++i)
+        set(atlas.images[i], std::move(outputs[i]), wanted[i].width, wanted[i].height);
+      return "";
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::cancelled) throw;
+      return error.message();
+    }
+  }
+
+  void resize(int image, std::span<const AtlasFace> faces) {
+    try {
+      const ImageUse& use = uses_[index(image)];
+      const auto [width, height] = wanted_size(before(image), options_);
+      Image8 picture = decoded(image);
+      if (!faces.empty() && is_smaller(image)) fill_between(picture, faces, context_);
+      picture = resized(picture, width, height, use.meaning, use.wrap_u, use.wrap_v, context_);
+      std::optional<ImageOutput> output = encoded(image, picture);
+      if (!output) return keep(image, "in the wanted format it would be larger");
+      set(image, std::move(*output), width, height);
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::cancelled) throw;
+      keep(image, error.message());
+    }
+  }
+
+  const ShrinkOptions& options_;
+  std::span<const VertexField> field_;
+  Context& context_;
+  std::vector<ImageUse> uses_;
+  Shrunk result_;
 };
-
-/// As asked for, except that WebP, which halves the resolution of colours, gives way to JPEG, which need not,
-/// where it could be near enough only without loss.
-Encoded encode(const Image8& image, TextureFormat format, double psnr_db, Content content) {
-  Encoded result{encode_to_psnr(image, format, psnr_db, content), format};
-  if (format != TextureFormat::webp || result.texture.quality > 0 || has_alpha(image) ||
-      !std::isfinite(psnr_db))
-    return result;
-  EncodedTexture jpeg = encode_to_psnr(image, TextureFormat::jpeg, psnr_db, content);
-  if (jpeg.psnr_db >= psnr_db && jpeg.bytes.size() < result.texture.bytes.size())
-    result = {std::move(jpeg), TextureFormat::jpeg};
-  return result;
-}
-
-/// The nearest encoding that is smaller than `bytes`; none if the format has no quality to lower.
-std::optional<Encoded> encode_below(const Image8& image, TextureFormat format, double psnr_db,
-                                    Content content, std::size_t bytes) {
-  constexpr double kStep = 3, kLeast = 20;  // dB; below, an image is no longer that image
-  for (; psnr_db >= kLeast; psnr_db -= kStep) {
-    Encoded result = encode(image, format, psnr_db, content);
-    if (result.texture.bytes.size() < bytes) return result;
-    if (format == TextureFormat::png) return std::nullopt;
-  }
-  return std::nullopt;
-}
-
-/// What becomes of one image.
-struct Outcome {
-  std::optional<std::vector<std::uint8_t>> bytes;
-  ImageChange change;
-};
-
-Outcome kept(const EncodedImage& image, std::string why) {
-  Outcome outcome;
-  outcome.change.before = outcome.change.after = state_of(image);
-  outcome.change.kept_because = std::move(why);
-  return outcome;
-}
-
-Outcome shrunk(const EncodedImage& image, const ImageUse& use, const ShrinkOptions& options,
-               const Context& context) {
-  if (!use.is_used) return kept(image, "no material uses it");
-  if (use.is_ambiguous) return kept(image, "materials read it in different ways");
-  Outcome outcome = kept(image, "");
-  const ImageChange::State& before = outcome.change.before;
-  if (before.width < 1) return kept(image, "it cannot be decoded");
-  const auto [width, height] = wanted_size(before, options);
-  const bool same_size = width == before.width && height == before.height;
-  const bool same_format = options.format == TextureOutput::keep ||
-                           mime_type(format_of(before.mime_type, options.format, false)) == before.mime_type;
-  if (same_size && same_format) return outcome;
-  try {
-    Image8 picture = decode_image(image.bytes);
-    if (has_alpha(picture) && (!use.alpha_counts || is_opaque(picture))) picture = without_alpha(picture);
-    picture = resized(picture, width, height, use.meaning, use.wrap_u, use.wrap_v, context);
-    const TextureFormat format = format_of(before.mime_type, options.format, has_alpha(picture));
-    const double psnr =
-        options.psnr_db >= kMostPsnr ? std::numeric_limits<double>::infinity() : options.psnr_db;
-    const Content content = use.meaning.kind == TexelMeaning::Kind::color ? Content::colors : Content::data;
-    std::optional<Encoded> encoded = encode(picture, format, psnr, content);
-    if (encoded->texture.bytes.size() >= before.bytes)
-      encoded = encode_below(picture, format, std::min(psnr, kMostPsnr), content, before.bytes);
-    if (!encoded) return kept(image, fmt::format("as {} it would be larger", mime_type(format).substr(6)));
-    outcome.change.after = {mime_type(encoded->format), width, height, encoded->texture.bytes.size()};
-    outcome.change.psnr_db = encoded->texture.psnr_db;
-    outcome.bytes = std::move(encoded->texture.bytes);
-    return outcome;
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::cancelled) throw;
-    return kept(image, error.message());
-  }
-}
 
 }  // namespace
 
 OptionList describe(ShrinkOptions& o) {
-  return {
+  OptionList options{
       {"texture-scale", "Scale the sides of all textures by this.", &o.scale, "", 1e-4, 1},
       {"max-texture", "Texels along the longer side of a texture, at most; 0 sets no limit.", &o.max_side,
        "texels", 0, 1 << 16},
-      {"texture-format", "File format of textures that change; JPEG where alpha does not count.",
-       choice(o.format, {"keep", "png", "jpeg", "webp"}), ""},
-      {"texture-psnr",
-       "How near a texture that is encoded anew has to be to what was encoded; from 99 on without loss.",
-       &o.psnr_db, "dB", 20, 100},
+      {"warp",
+       "Move texels within textures that become smaller to where they matter: balanced by what would be "
+       "lost, where it shows "
+       "and who looks, if that gains; or as published, by saliency (Yang et al. 2016) or frequency (Balmelli "
+       "et "
+       "al. 2002).",
+       choice(o.moves, {"none", "balanced", "saliency", "frequency"}), ""},
   };
+  const OptionList output = describe(o.output);
+  options.insert(options.end(), output.begin(), output.end());
+  return options;
 }
 
-Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, Context& context) {
+Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
+                       Context& context) {
   ShrinkOptions checked = options;
   check(describe(checked));
-  const std::vector<ImageUse> uses = image_uses(model);
-  Shrunk result{model, std::vector<ImageChange>(model.images.size())};
-  for (std::size_t i = 0; i < model.images.size(); ++i) {
-    context.advance_or_throw("textures", static_cast<double>(i) / static_cast<double>(model.images.size()));
-    Outcome outcome = shrunk(model.images[i], uses[i], options, context);
-    if (outcome.bytes) {
-      result.model.images[i].bytes = std::move(*outcome.bytes);
-      result.model.images[i].mime_type = outcome.change.after.mime_type;
-    } else if (!outcome.change.kept_because.empty()) {
-      context.report("image-kept", fmt::format("stays as it is: {}", outcome.change.kept_because),
-                     fmt::format("image {}", i));
-    }
-    result.images[i] = std::move(outcome.change);
+  check(describe(checked.warp));
+  if (!field.empty()) check_fields(model, field);
+  Shrinker shrinker(model, options, field, context);
+  const std::vector<Atlas> atlases = find_atlases(model);
+  std::set<int> known;
+  for (std::size_t a = 0; a < atlases.size(); ++a) {
+    context.advance_or_throw("textures", static_cast<double>(a) / static_cast<double>(atlases.size()));
+    shrinker.shrink(atlases[a]);
+    known.insert(atlases[a].images.begin(), atlases[a].images.end());
   }
-  return result;
+  for (int image = 0; image < static_cast<int>(model.images.size()); ++image) {
+    if (!known.contains(image)) shrinker.keep(image, "no material uses it");
+  }
+  return shrinker.take();
 }
 
 }  // namespace fovea

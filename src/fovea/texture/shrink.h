@@ -1,53 +1,71 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "fovea/base/context.h"
 #include "fovea/base/options.h"
+#include "fovea/model/field.h"
 #include "fovea/model/model.h"
-#include "fovea/texture/encode.h"
+#include "fovea/texture/atlas.h"
+#include "fovea/texture/atlas_warp.h"
+#include "fovea/texture/image_output.h"
 
 namespace fovea {
 
-/// What files an image may become.
-enum class TextureOutput { keep, png, jpeg, webp };
+/// How texels may move within images that become smaller.
+enum class TexelMoves {
+  none,
+  balanced,   ///< As WarpAim::balanced, and only where it gains.
+  saliency,   ///< As WarpAim::saliency, wherever it folds nothing.
+  frequency,  ///< As WarpAim::frequency, wherever it folds nothing.
+};
 
 struct ShrinkOptions {
   double scale = 1;           ///< Of each side, above 0 up to 1.
   std::int64_t max_side = 0;  ///< Texels along the longer side at most; 0 for no limit.
-  TextureOutput format = TextureOutput::keep;
-  double psnr_db = 40;  ///< How near what a file decodes to has to be to what was encoded.
+  ImageOutputOptions output;
+  TexelMoves moves = TexelMoves::balanced;
+  WarpOptions warp;
 };
 OptionList describe(ShrinkOptions& options);
 
-/// One image before and after.
-struct ImageChange {
-  struct State {
-    std::string mime_type;
-    int width = 0, height = 0;
-    std::uint64_t bytes = 0;
-  };
-  State before, after;
-  double psnr_db = 0;        ///< Of the encoding, infinite without loss; 0 if the image was not encoded anew.
-  std::string kept_because;  ///< Why it is as it was though it was to be smaller.
+/// What became of the texels of an atlas whose images change.
+struct AtlasChange {
+  std::vector<int> images;
+  std::string fixed_because;  ///< Why its texels did not move; empty if they did.
+  double strength = 0;        ///< 0 if they did not, else AtlasWarp::strength.
+  std::int64_t rounds = 0;    ///< Of the warp,
+  double last_move = 0;       ///< and how far a node went in the last, in cells.
+  bool settled = false;
+  double loss = 0, plain_loss = 0;  ///< As AtlasWarp's; 0 where nothing was measured.
 };
 
 struct Shrunk {
   Model model;
   std::vector<ImageChange> images;  ///< [#images]
+  std::vector<AtlasChange> atlases;
 };
 
-/// Makes the images of a model smaller, in texels and in bytes: each mixed as what it stands for
-/// (`image_uses`, `resized`), encoded to an error (`encode_to_psnr`). An image's file never grows; where it
-/// would, its quality is lowered if its format has one, else the image stays what it was. Images stay, and
-/// are reported ("image-kept"), if no material uses them, if they are read in more than one way, and if they
-/// cannot be decoded (KTX2, damaged).
+/// Makes the images of a model smaller, in texels and in bytes, atlas by atlas (atlas.h).
 ///
-/// JPEG is given to images whose alpha nobody reads; the others become PNG. WebP needs EXT_texture_webp,
-/// which the writer adds. Sides are at least 1. One image after the other, each in parallel. Throws
-/// Error(usage) for options out of range, Error(cancelled).
-Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, Context& context);
+/// Where texels may move, they go where they matter (atlas_warp.h), and the coordinates of triangles with
+/// them; where they gain nothing by that they stay, and images are `resized` as what they stand for
+/// (`image_uses`). Of images that only triangles read, all of them known, what no triangle covers is filled
+/// from what is around, so that nothing comes in from between the charts. Then they are encoded to an error
+/// (image_output.h).
+///
+/// An image's file never grows. Where it would, quality is lowered if the format has one; else texels stay
+/// where they were and the image what it was. Images also stay, and are reported ("image-kept"), if no
+/// material uses them, if they are read in more than one way, and if they cannot be decoded (KTX2, damaged).
+/// Sides are at least 1.
+///
+/// `field` [#meshes][#V] says how much is looked at, 0 … 1; empty for alike everywhere. One atlas after the
+/// other, each in parallel, all of its images in memory. Throws Error(usage) for options out of range and for
+/// a field of another model, Error(cancelled).
+Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
+                       Context& context);
 
 }  // namespace fovea

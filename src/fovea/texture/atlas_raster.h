@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/base/parallel.h"
+#include "fovea/texture/atlas.h"
+#include "fovea/texture/barycentric.h"
+#include "fovea/texture/texel_scan.h"
+
+// Shared inside Fovea, not installed.
+
+namespace fovea {
+
+/// A picture in the space of an atlas: a T for each texel whose centre lies in a triangle.
+template <class T>
+struct AtlasRaster {
+  int width = 0, height = 0;
+  std::vector<T> texels;            // [height × width], T() where no triangle is
+  std::vector<std::uint8_t> drawn;  // [height × width]
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+};
+
+/// Draws triangles: each texel whose centre lies in one gets `value(number, weights of corners)`; where
+/// several lie, that of the first. O(#F + #texels), parallel over bands of rows. Throws Error(cancelled).
+template <class T, class Value>
+AtlasRaster<T> rasterized(std::span<const AtlasFace> faces, int width, int height, const Value& value,
+                          const Context& context) {
+  constexpr int kBand = 32;
+  AtlasRaster<T> result{width, height, {}, {}};
+  result.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  result.drawn.resize(result.texels.size(), 0);
+  std::vector<std::vector<std::uint32_t>> bands(static_cast<std::size_t>((height + kBand - 1) / kBand));
+  const auto band = [&](double v) {
+    return std::min(static_cast<int>(std::clamp(v, 0.0, 1.0) * height), height - 1) / kBand;
+  };
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
+    const auto [low, high] = std::minmax({faces[f].uv[0].y, faces[f].uv[1].y, faces[f].uv[2].y});
+    for (int b = band(low); b <= band(high); ++b) bands[static_cast<std::size_t>(b)].push_back(f);
+  }
+  parallel_for_or_throw(context, bands.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const std::int64_t top = static_cast<std::int64_t>(b) * kBand,
+                         bottom = std::min<std::int64_t>(top + kBand, height);
+      for (const std::uint32_t f : bands[b]) {
+        std::array<Vec2d, 3> triangle;
+        for (std::size_t k = 0; k < 3; ++k)
+          triangle[k] = {faces[f].uv[k].x * width, faces[f].uv[k].y * height};
+        const Barycentric barycentric(triangle);
+        for_texel_rows(triangle, 1, [&](std::int64_t y, std::int64_t first, std::int64_t last) {
+          if (y < top || y >= bottom) return;
+          const std::int64_t from = std::max<std::int64_t>(first, 0),
+                             to = std::min<std::int64_t>(last, width);
+          for (std::int64_t x = from; x < to; ++x) {
+            const std::size_t i = result.index(static_cast<int>(x), static_cast<int>(y));
+            if (result.drawn[i] != 0) continue;
+            const Vec2d center{static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
+            result.texels[i] = value(f, clamped(barycentric.at(center)));
+            result.drawn[i] = 1;
+          }
+        });
+      }
+    }
+  });
+  return result;
+}
+
+}  // namespace fovea

@@ -1,0 +1,238 @@
+#include "fovea/texture/atlas_warp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "fovea/texture/bake.h"
+#include "fovea/texture/importance.h"
+#include "fovea/texture/tangent_turn.h"
+#include "fovea/texture/texel_loss.h"
+
+namespace fovea {
+
+namespace {
+
+/// Longest side of the maps that losses are measured on, and of those that steer the warp, in texels.
+constexpr int kMapSide = 512, kSteeringSide = 128;
+/// An image is baked at so many times its new size, at least and at most, and then resized.
+constexpr int kLeastOversampling = 2, kMostOversampling = 8;
+/// Mean squared difference below which nothing is lost: that of half a step of a byte.
+constexpr double kLeastLoss = 0.25 / (255.0 * 255.0);
+/// Of a triangle's area in the texture: what it has to keep.
+constexpr double kLeastArea = 0.02;
+/// In texels: the height of triangles that may turn over.
+constexpr double kThin = 0.05;
+/// Part of the texels that may show two places at once; rasterisation alone makes some.
+constexpr double kMostConflicts = 1e-3;
+
+/// The grid, but only part of the way.
+WarpGrid partial(const WarpGrid& grid, double strength) {
+  WarpGrid result(grid.columns(), grid.rows());
+  for (int j = 0; j <= grid.rows(); ++j) {
+    for (int i = 0; i <= grid.columns(); ++i)
+      result.set_node(i, j, result.node(i, j) * (1 - strength) + grid.node(i, j) * strength);
+  }
+  return result;
+}
+
+/// Whether triangles turn over or all but vanish, other than such as are thinner than anything an image of
+/// `side` texels shows.
+bool is_turned_over(std::span<const AtlasFace> from, std::span<const AtlasFace> to, int side) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const auto area = [](const AtlasFace& f) { return cross(f.uv[1] - f.uv[0], f.uv[2] - f.uv[0]); };
+    const double before = area(from[i]), after = area(to[i]);
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2d edge = from[i].uv[(k + 1) % 3] - from[i].uv[k];
+      longest = std::max(longest, std::hypot(edge.x, edge.y));
+    }
+    if (std::abs(before) * side > kThin * longest && after / before < kLeastArea) return true;
+  }
+  return false;
+}
+
+/// Part of the drawn texels that show more than one place of the old image, a texel or more apart.
+double conflicts(std::span<const AtlasFace> from, std::span<const AtlasFace> to,
+                 const TexelOrigins& origins) {
+  std::size_t bad = 0, drawn = 0;
+  const auto size = Vec2d{static_cast<double>(origins.width), static_cast<double>(origins.height)};
+  for (std::uint32_t f = 0; f < to.size(); ++f) {
+    std::array<Vec2d, 3> triangle;
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = {to[f].uv[k].x * size.x, to[f].uv[k].y * size.y};
+    const Barycentric barycentric(triangle);
+    for_texel_rows(triangle, 1, [&](std::int64_t y, std::int64_t begin, std::int64_t end) {
+      if (y < 0 || y >= origins.height) return;
+      for (auto x = std::max<std::int64_t>(begin, 0); x < std::min<std::int64_t>(end, origins.width); ++x) {
+        const TexelOrigin& first = origins.texels[origins.index(static_cast<int>(x), static_cast<int>(y))];
+        if (first.face == f) ++drawn;
+        if (first.face == f) continue;
+        const Vec2d center{static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
+        const Vec2d at = uv_at(from[f], clamped(barycentric.at(center)));
+        const double dx = (at.x - static_cast<double>(first.uv.x)) * size.x,
+                     dy = (at.y - static_cast<double>(first.uv.y)) * size.y;
+        bad += dx * dx + dy * dy > 1;
+      }
+    });
+  }
+  return drawn > 0 ? static_cast<double>(bad) / static_cast<double>(drawn) : 0;
+}
+
+/// Means over squares of drawn texels, which then go on a little beyond where something is drawn.
+ImageF reduced(const ImageF& map, std::span<const std::uint8_t> drawn, int factor) {
+  ImageF result((map.width + factor - 1) / factor, (map.height + factor - 1) / factor, 1, map.encoding);
+  ImageF count = result;
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      if (drawn[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
+                static_cast<std::size_t>(x)] == 0)
+        continue;
+      *result.at(x / factor, y / factor) += *map.at(x, y);
+      *count.at(x / factor, y / factor) += 1;
+    }
+  }
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+    if (count.pixels[i] > 0) result.pixels[i] /= count.pixels[i];
+  }
+  return result;
+}
+
+ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
+  switch (aim) {
+    case WarpAim::saliency: return saliency_importance(maps);
+    case WarpAim::frequency: return frequency_importance(maps);
+    case WarpAim::balanced: break;
+  }
+  return balanced_importance(maps);
+}
+
+class Warper {
+ public:
+  Warper(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
+         std::span<const VertexField> field, Context& context)
+      : model_(model),
+        atlas_(atlas),
+        images_(images),
+        context_(context),
+        from_(atlas_faces(model, atlas)),
+        maps_(texture_importance(model, atlas, field, kMapSide, context)) {}
+
+  AtlasWarp unmoved() {
+    AtlasWarp result;
+    result.to = from_;
+    for (const WarpedImage& image : images_)
+      result.images.push_back(resized(*image.image, image.width, image.height, image.meaning, Wrap::clamp,
+                                      Wrap::clamp, context_));
+    places_ = places(from_);
+    maps_.detail = ImageF(maps_.coverage.width, maps_.coverage.height, 1, ColorEncoding::linear);
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      const ImageF lost = losses(i, result.images[i], places_);
+      for (std::size_t t = 0; t < lost.pixels.size(); ++t) maps_.detail.pixels[t] += lost.pixels[t];
+    }
+    result.loss = result.plain_loss = mean(maps_.detail);
+    return result;
+  }
+
+  /// After `unmoved`.
+  Warp find_warp(WarpAim aim, const WarpOptions& options) {
+    const int factor = std::max(1, std::max(maps_.coverage.width, maps_.coverage.height) / kSteeringSide);
+    const auto small = [&](const ImageF& map) { return reduced(map, places_.drawn, factor); };
+    const TextureImportance maps{small(maps_.saliency), small(maps_.distortion), small(maps_.coverage),
+                                 small(maps_.detail)};
+    WarpOptions asked = options;
+    if (aim == WarpAim::frequency) asked.rigidity = 0;
+    return warp(importance_of(maps, aim), asked, context_);
+  }
+
+  /// None if it folds something over.
+  std::optional<AtlasWarp> moved(const Warp& warp, double strength) {
+    AtlasWarp result;
+    result.strength = strength;
+    const WarpGrid grid = partial(warp.grid, strength);
+    if (!(grid.smallest_corner() > 0)) return std::nullopt;
+    const InverseWarp inverse(grid);
+    result.model = with_moved_coordinates(model_, atlas_, [&](Vec2d uv) { return inverse.target(uv); });
+    result.to = atlas_faces(result.model, atlas_);
+    if (is_turned_over(from_, result.to, longest_side())) return std::nullopt;
+    const auto turns = tangent_turns(model_, from_, result.to);
+    std::optional<TexelOrigins> origins;
+    std::vector<UvSlopes> slopes;
+    for (const WarpedImage& image : images_) {
+      const int factor = std::clamp((image.image->width + image.width - 1) / image.width, kLeastOversampling,
+                                    kMostOversampling);
+      const int width = factor * image.width, height = factor * image.height;
+      if (!origins || origins->width != width || origins->height != height) {
+        origins = texel_origins(result.to, from_, turns, width, height, context_);
+        slopes = texel_slopes(result.to, from_, width, height);
+        if (conflicts(from_, result.to, *origins) > kMostConflicts) return std::nullopt;
+      }
+      const Image8 large = baked(*image.image, image.meaning, *origins, slopes, context_);
+      result.images.push_back(
+          resized(large, image.width, image.height, image.meaning, Wrap::clamp, Wrap::clamp, context_));
+    }
+    const TexelOrigins there = places(result.to);
+    for (std::size_t i = 0; i < images_.size(); ++i) result.loss += mean(losses(i, result.images[i], there));
+    return result;
+  }
+
+ private:
+  int longest_side() const {
+    int side = 1;
+    for (const WarpedImage& image : images_) side = std::max({side, image.width, image.height});
+    return side;
+  }
+  /// Where the texels of the maps are in the new images.
+  TexelOrigins places(std::span<const AtlasFace> to) const {
+    return texel_origins(from_, to, {}, maps_.coverage.width, maps_.coverage.height, context_);
+  }
+  ImageF losses(std::size_t i, const Image8& image, const TexelOrigins& places) const {
+    return texel_losses(*images_[i].image, image, images_[i].meaning, places, context_);
+  }
+  /// Over the surface, as it is looked at.
+  double mean(const ImageF& losses) const {
+    double sum = 0, weights = 0;
+    for (std::size_t i = 0; i < losses.pixels.size(); ++i) {
+      const double weight =
+          static_cast<double>(maps_.saliency.pixels[i]) * static_cast<double>(maps_.coverage.pixels[i]);
+      sum += weight * static_cast<double>(losses.pixels[i]);
+      weights += weight;
+    }
+    return weights > 0 ? sum / weights : 0;
+  }
+
+  const Model& model_;
+  const Atlas& atlas_;
+  std::span<const WarpedImage> images_;
+  Context& context_;
+  std::vector<AtlasFace> from_;
+  TextureImportance maps_;
+  TexelOrigins places_;
+};
+
+}  // namespace
+
+AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
+                     std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
+                     bool measured, Context& context) {
+  Warper warper(model, atlas, images, field, context);
+  AtlasWarp best = warper.unmoved();
+  best.model = model;
+  const double plain_loss = best.loss;
+  if (plain_loss < kLeastLoss) return best;
+  Warp found = warper.find_warp(aim, options);
+  double least = measured ? plain_loss : std::numeric_limits<double>::infinity();
+  for (const double strength : {1.0, 0.5, 0.25}) {
+    std::optional<AtlasWarp> next = warper.moved(found, strength);
+    if (!next || next->loss >= least) continue;
+    least = next->loss;
+    best = std::move(*next);
+    if (!measured) break;
+  }
+  best.plain_loss = plain_loss;
+  best.warp = std::move(found);
+  return best;
+}
+
+}  // namespace fovea

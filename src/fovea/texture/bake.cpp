@@ -1,0 +1,82 @@
+#include "fovea/texture/bake.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/parallel.h"
+#include "fovea/base/srgb.h"
+#include "fovea/texture/fill.h"
+
+namespace fovea {
+
+namespace {
+
+/// Rows that a thread bakes at once.
+constexpr std::size_t kGrain = 16;
+/// Looks along the longer side of what a texel covers.
+constexpr int kAnisotropy = 4;
+
+std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255 + 0.5f); }
+
+/// A normal seen from a frame that has turned by `angle`.
+Rgba turned(Rgba normal, float angle) {
+  if (angle == 0) return normal;
+  const float c = std::cos(angle), s = std::sin(angle), x = 2 * normal.r - 1, y = 2 * normal.g - 1;
+  return {0.5f + 0.5f * (c * x + s * y), 0.5f + 0.5f * (c * y - s * x), normal.b, normal.a};
+}
+
+}  // namespace
+
+std::vector<UvSlopes> texel_slopes(std::span<const AtlasFace> to, std::span<const AtlasFace> from, int width,
+                                   int height) {
+  std::vector<UvSlopes> slopes(to.size());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Vec2d a = to[i].uv[1] - to[i].uv[0], b = to[i].uv[2] - to[i].uv[0];
+    const Vec2d p = from[i].uv[1] - from[i].uv[0], q = from[i].uv[2] - from[i].uv[0];
+    const double area = cross(a, b);
+    if (area == 0) continue;
+    const Vec2d along = (p * b.y - q * a.y) * (1 / (area * width)),
+                down = (q * a.x - p * b.x) * (1 / (area * height));
+    slopes[i] = {{static_cast<float>(along.x), static_cast<float>(along.y)},
+                 {static_cast<float>(down.x), static_cast<float>(down.y)}};
+  }
+  return slopes;
+}
+
+Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigins& origins,
+             std::span<const UvSlopes> slopes, const Context& context) {
+  const bool is_color = meaning.kind == TexelMeaning::Kind::color,
+             is_normal = meaning.kind == TexelMeaning::Kind::normal && image.channels >= 3;
+  const MipMap map(image, is_color ? ColorEncoding::srgb : ColorEncoding::linear);
+  const Sampler sampler{
+      .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
+  Image8 result(origins.width, origins.height, image.channels, image.encoding);
+  parallel_for_or_throw(context, static_cast<std::size_t>(origins.height), kGrain,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t y = begin; y < end; ++y) {
+                            for (int x = 0; x < origins.width; ++x) {
+                              const std::size_t i = origins.index(x, static_cast<int>(y));
+                              if (origins.drawn[i] == 0) continue;
+                              const TexelOrigin& origin = origins.texels[i];
+                              Rgba value = map.sample(origin.uv, slopes[origin.face], sampler, kAnisotropy);
+                              if (is_normal) value = turned(value, origin.turn);
+                              std::uint8_t* out = result.at(x, static_cast<int>(y));
+                              const float colors[] = {value.r, value.g, value.b};
+                              const int alpha = image.channels % 2 == 0 ? image.channels - 1 : image.channels;
+                              for (int k = 0; k < alpha; ++k)
+                                out[k] = is_color ? to_display(colors[k]) : byte(colors[k]);
+                              if (alpha < image.channels) out[alpha] = byte(value.a);
+                            }
+                          }
+                        });
+  fill_undrawn(result, origins.drawn);
+  return result;
+}
+
+void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
+  struct Nothing {};
+  const auto nothing = [](std::uint32_t, const std::array<double, 3>&) { return Nothing{}; };
+  fill_undrawn(image, rasterized<Nothing>(faces, image.width, image.height, nothing, context).drawn);
+}
+
+}  // namespace fovea

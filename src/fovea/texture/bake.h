@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/model/image.h"
+#include "fovea/texture/mip_map.h"
+#include "fovea/texture/resize.h"
+#include "fovea/texture/texel_origin.h"
+
+// Shared inside Fovea, not installed.
+
+namespace fovea {
+
+/// How a triangle's place in the old image changes from a texel of the new one to the next.
+std::vector<UvSlopes> texel_slopes(std::span<const AtlasFace> to, std::span<const AtlasFace> from, int width,
+                                   int height);
+
+/// The image as it looks through triangles that have moved: each texel of the new image is looked up where
+/// it comes from, as GPUs filter (`MipMap`, up to four looks along the longer side of what it covers). Normal
+/// maps turn with their tangents. What no triangle covers goes on from what is around (`fill_undrawn`).
+///
+/// `slopes` [#faces of `origins`]. The result has the size of `origins`. O(#texels of both), parallel.
+/// Throws Error(cancelled).
+Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigins& origins,
+             std::span<const UvSlopes> slopes, const Context& context);
+
+/// The image with all that no triangle covers filled from what is around, its colours beyond the triangles'
+/// borders among them. In place. O(#F + #texels), parallel.
+void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context);
+
+}  // namespace fovea

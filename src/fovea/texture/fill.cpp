@@ -1,0 +1,86 @@
+#include "fovea/texture/fill.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <vector>
+
+namespace fovea {
+
+namespace {
+
+/// An image and which of its texels are known.
+struct Level {
+  Image8 image;
+  std::vector<std::uint8_t> known;
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+  }
+};
+
+constexpr int kMostChannels = 4;
+
+/// Half the size: averages of what is known of 2 × 2 texels.
+Level pushed(const Image8& image, std::span<const std::uint8_t> known) {
+  const int width = (image.width + 1) / 2, height = (image.height + 1) / 2, channels = image.channels;
+  Level half{Image8(width, height, channels, image.encoding), {}};
+  half.known.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      std::array<int, kMostChannels> sum{};
+      int count = 0;
+      for (int j = 2 * y; j < std::min(2 * y + 2, image.height); ++j) {
+        for (int i = 2 * x; i < std::min(2 * x + 2, image.width); ++i) {
+          if (known[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) +
+                    static_cast<std::size_t>(i)] == 0)
+            continue;
+          ++count;
+          const std::uint8_t* texel = image.at(i, j);
+          for (int k = 0; k < channels; ++k) sum[static_cast<std::size_t>(k)] += texel[k];
+        }
+      }
+      if (count == 0) continue;
+      half.known[half.index(x, y)] = 1;
+      for (int k = 0; k < channels; ++k) {
+        half.image.at(x, y)[k] =
+            static_cast<std::uint8_t>((sum[static_cast<std::size_t>(k)] + count / 2) / count);
+      }
+    }
+  }
+  return half;
+}
+
+/// What is not known is mixed from the four nearest texels of half the size, which are all there.
+void pull(Image8& image, std::span<const std::uint8_t> known, const Image8& half) {
+  for (int y = 0; y < image.height; ++y) {
+    const int row = y / 2, other_row = std::clamp(row + (y % 2 == 0 ? -1 : 1), 0, half.height - 1);
+    for (int x = 0; x < image.width; ++x) {
+      if (known[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                static_cast<std::size_t>(x)] != 0)
+        continue;
+      const int column = x / 2, other_column = std::clamp(column + (x % 2 == 0 ? -1 : 1), 0, half.width - 1);
+      const std::uint8_t *a = half.at(column, row), *b = half.at(other_column, row),
+                         *c = half.at(column, other_row), *d = half.at(other_column, other_row);
+      std::uint8_t* out = image.at(x, y);
+      for (int k = 0; k < image.channels; ++k)
+        out[k] = static_cast<std::uint8_t>((9 * a[k] + 3 * b[k] + 3 * c[k] + d[k] + 8) / 16);
+    }
+  }
+}
+
+void fill(Image8& image, std::span<const std::uint8_t> known) {
+  if (std::ranges::find(known, 0) == known.end() || (image.width == 1 && image.height == 1)) return;
+  Level half = pushed(image, known);
+  fill(half.image, half.known);
+  pull(image, known, half.image);
+}
+
+}  // namespace
+
+void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn) {
+  assert(image.channels <= kMostChannels);
+  if (std::ranges::find_if(drawn, [](std::uint8_t d) { return d != 0; }) != drawn.end()) fill(image, drawn);
+}
+
+}  // namespace fovea

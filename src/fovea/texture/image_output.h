@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/base/options.h"
+#include "fovea/model/image.h"
+#include "fovea/texture/encode.h"
+#include "fovea/texture/image_use.h"
+
+namespace fovea {
+
+/// What files an image may become.
+enum class TextureOutput { keep, png, jpeg, webp };
+
+struct ImageOutputOptions {
+  TextureOutput format = TextureOutput::keep;
+  double psnr_db = 40;  ///< How near what a file decodes to has to be to what was encoded.
+};
+OptionList describe(ImageOutputOptions& options);
+
+/// One image before and after.
+struct ImageChange {
+  struct State {
+    std::string mime_type;
+    int width = 0, height = 0;
+    std::uint64_t bytes = 0;
+  };
+  State before, after;
+  double psnr_db = 0;        ///< Of the encoding, infinite without loss; 0 if the image was not encoded anew.
+  std::string kept_because;  ///< Why it is as it was though it was to be smaller.
+};
+
+/// What a file says of itself; sizes are 0 if it does not tell.
+ImageChange::State state_of(const EncodedImage& image);
+
+/// Whether an image of that type would stay of it.
+bool keeps_format(const std::string& mime_type, const ImageOutputOptions& options);
+
+/// The image without an alpha channel that nobody reads or that hides nothing.
+Image8 without_idle_alpha(Image8 image, const ImageUse& use);
+
+/// An encoded file, smaller than `most_bytes`: of the wanted format and as near as asked, then at lower
+/// quality; none if a format has no quality to lower. JPEG is given to images without alpha, others become
+/// PNG; WebP, which has half the resolution for colours, gives way to JPEG where it could be near enough only
+/// without loss. `mime_type` is that of the file before.
+struct ImageOutput {
+  EncodedTexture texture;
+  TextureFormat format;
+};
+std::optional<ImageOutput> encode_output(const Image8& image, const ImageUse& use,
+                                         const std::string& mime_type, std::uint64_t most_bytes,
+                                         const ImageOutputOptions& options);
+
+}  // namespace fovea

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "fovea/model/model.h"
+
+/// Models with images, for what works on textures.
+namespace fovea::test {
+
+/// The mesh in a scene; its material 0, which parts without one get, has base
+/// colour image 0 and, if there are two images, normal map image 1; each 64 × 64, a picture that fills it, in
+/// a PNG.
+Model textured(TriMesh mesh, int images);
+
+}  // namespace fovea::test

@@ -1,0 +1,54 @@
+#include "fovea/texture/fill.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace fovea {
+namespace {
+
+TEST(FillUndrawn, GoesOnFromWhatIsDrawn) {
+  Image8 image(9, 5, 2, ColorEncoding::srgb);
+  std::vector<std::uint8_t> drawn(45, 0);
+  // A column of one value on the left and one of another on the right.
+  for (int y = 0; y < 5; ++y) {
+    drawn[static_cast<std::size_t>(9 * y)] = drawn[static_cast<std::size_t>(9 * y + 8)] = 1;
+    image.at(0, y)[0] = 100, image.at(0, y)[1] = 7;
+    image.at(8, y)[0] = 200, image.at(8, y)[1] = 7;
+  }
+  const Image8 before = image;
+  fill_undrawn(image, drawn);
+  for (int y = 0; y < 5; ++y) {
+    EXPECT_EQ(*image.at(0, y), *before.at(0, y));
+    EXPECT_EQ(*image.at(8, y), *before.at(8, y));
+    EXPECT_LT(*image.at(1, y), 150) << "nearer to the left column";
+    EXPECT_GT(*image.at(7, y), 150) << "nearer to the right column";
+    for (int x = 0; x < 9; ++x) {
+      EXPECT_GE(*image.at(x, y), 100);
+      EXPECT_LE(*image.at(x, y), 200);
+      EXPECT_EQ(image.at(x, y)[1], 7);
+    }
+  }
+}
+
+TEST(FillUndrawn, OneTexelFillsAll) {
+  Image8 image(13, 1, 1, ColorEncoding::srgb);
+  std::vector<std::uint8_t> drawn(13, 0);
+  drawn[5] = 1;
+  *image.at(5, 0) = 42;
+  fill_undrawn(image, drawn);
+  for (int x = 0; x < 13; ++x) EXPECT_EQ(*image.at(x, 0), 42);
+}
+
+TEST(FillUndrawn, NothingDrawnOrAllDrawnChangesNothing) {
+  Image8 image(3, 3, 1, ColorEncoding::srgb);
+  for (std::size_t i = 0; i < 9; ++i) image.pixels[i] = static_cast<std::uint8_t>(i);
+  const std::vector<std::uint8_t> before = image.pixels;
+  fill_undrawn(image, std::vector<std::uint8_t>(9, 0));
+  EXPECT_EQ(image.pixels, before);
+  fill_undrawn(image, std::vector<std::uint8_t>(9, 1));
+  EXPECT_EQ(image.pixels, before);
+}
+
+}  // namespace
+}  // namespace fovea
