@@ -17,7 +17,7 @@ TEST(FillUndrawn, GoesOnFromWhatIsDrawn) {
     image.at(8, y)[0] = 200, image.at(8, y)[1] = 7;
   }
   const Image8 before = image;
-  fill_undrawn(image, drawn);
+  fill_undrawn(image, drawn, Context());
   for (int y = 0; y < 5; ++y) {
     EXPECT_EQ(*image.at(0, y), *before.at(0, y));
     EXPECT_EQ(*image.at(8, y), *before.at(8, y));
@@ -36,7 +36,7 @@ TEST(FillUndrawn, OneTexelFillsAll) {
   std::vector<std::uint8_t> drawn(13, 0);
   drawn[5] = 1;
   *image.at(5, 0) = 42;
-  fill_undrawn(image, drawn);
+  fill_undrawn(image, drawn, Context());
   for (int x = 0; x < 13; ++x) EXPECT_EQ(*image.at(x, 0), 42);
 }
 
@@ -44,9 +44,9 @@ TEST(FillUndrawn, NothingDrawnOrAllDrawnChangesNothing) {
   Image8 image(3, 3, 1, ColorEncoding::srgb);
   for (std::size_t i = 0; i < 9; ++i) image.pixels[i] = static_cast<std::uint8_t>(i);
   const std::vector<std::uint8_t> before = image.pixels;
-  fill_undrawn(image, std::vector<std::uint8_t>(9, 0));
+  fill_undrawn(image, std::vector<std::uint8_t>(9, 0), Context());
   EXPECT_EQ(image.pixels, before);
-  fill_undrawn(image, std::vector<std::uint8_t>(9, 1));
+  fill_undrawn(image, std::vector<std::uint8_t>(9, 1), Context());
   EXPECT_EQ(image.pixels, before);
 }
 

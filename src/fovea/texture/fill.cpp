@@ -5,6 +5,8 @@
 #include <cassert>
 #include <vector>
 
+#include "fovea/base/parallel.h"
+
 namespace fovea {
 
 namespace {
@@ -21,12 +23,21 @@ struct Level {
 
 constexpr int kMostChannels = 4;
 
+template <class Row>
+void over_rows(int height, const Context& context, const Row& row) {
+  constexpr std::size_t kGrain = 64;
+  parallel_for_or_throw(context, static_cast<std::size_t>(height), kGrain,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t y = begin; y < end; ++y) row(static_cast<int>(y));
+                        });
+}
+
 /// Half the size: averages of what is known of 2 × 2 texels.
-Level pushed(const Image8& image, std::span<const std::uint8_t> known) {
+Level pushed(const Image8& image, std::span<const std::uint8_t> known, const Context& context) {
   const int width = (image.width + 1) / 2, height = (image.height + 1) / 2, channels = image.channels;
   Level half{Image8(width, height, channels, image.encoding), {}};
   half.known.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  for (int y = 0; y < height; ++y) {
+  over_rows(height, context, [&](int y) {
     for (int x = 0; x < width; ++x) {
       std::array<int, kMostChannels> sum{};
       int count = 0;
@@ -47,13 +58,13 @@ Level pushed(const Image8& image, std::span<const std::uint8_t> known) {
             static_cast<std::uint8_t>((sum[static_cast<std::size_t>(k)] + count / 2) / count);
       }
     }
-  }
+  });
   return half;
 }
 
 /// What is not known is mixed from the four nearest texels of half the size, which are all there.
-void pull(Image8& image, std::span<const std::uint8_t> known, const Image8& half) {
-  for (int y = 0; y < image.height; ++y) {
+void pull(Image8& image, std::span<const std::uint8_t> known, const Image8& half, const Context& context) {
+  over_rows(image.height, context, [&](int y) {
     const int row = y / 2, other_row = std::clamp(row + (y % 2 == 0 ? -1 : 1), 0, half.height - 1);
     for (int x = 0; x < image.width; ++x) {
       if (known[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
@@ -66,21 +77,22 @@ void pull(Image8& image, std::span<const std::uint8_t> known, const Image8& half
       for (int k = 0; k < image.channels; ++k)
         out[k] = static_cast<std::uint8_t>((9 * a[k] + 3 * b[k] + 3 * c[k] + d[k] + 8) / 16);
     }
-  }
+  });
 }
 
-void fill(Image8& image, std::span<const std::uint8_t> known) {
+void fill(Image8& image, std::span<const std::uint8_t> known, const Context& context) {
   if (std::ranges::find(known, 0) == known.end() || (image.width == 1 && image.height == 1)) return;
-  Level half = pushed(image, known);
-  fill(half.image, half.known);
-  pull(image, known, half.image);
+  Level half = pushed(image, known, context);
+  fill(half.image, half.known, context);
+  pull(image, known, half.image, context);
 }
 
 }  // namespace
 
-void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn) {
+void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn, const Context& context) {
   assert(image.channels <= kMostChannels);
-  if (std::ranges::find_if(drawn, [](std::uint8_t d) { return d != 0; }) != drawn.end()) fill(image, drawn);
+  if (std::ranges::find_if(drawn, [](std::uint8_t d) { return d != 0; }) != drawn.end())
+    fill(image, drawn, context);
 }
 
 }  // namespace fovea

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "fovea/base/context.h"
 #include "fovea/model/image.h"
 
 // Shared inside Fovea, not installed.
@@ -13,7 +14,8 @@ namespace fovea {
 /// double in size until there are some, mixed from there on down (push-pull; Gortler et al. 1996, "The
 /// Lumigraph"). So filters and compressors find nothing at a chart's border that is not like the chart.
 /// Stored values are averaged as they are. `drawn` [height × width] is 0 for texels to fill; nothing happens
-/// if all are. O(#texels).
-void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn);
+/// if all are. O(#texels),
+/// parallel.
+void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn, const Context& context);
 
 }  // namespace fovea
