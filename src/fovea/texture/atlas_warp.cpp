@@ -22,6 +22,8 @@ constexpr int kAttempts = 5;
 constexpr double kGoodLoss = 0.9;
 /// An image is baked at so many times its new size, at least and at most, and then resized.
 constexpr int kLeastOversampling = 2, kMostOversampling = 8;
+/// And of that size at most, in texels along the longer side, if it is more than the least.
+constexpr int kLongestBaked = 4096;
 /// Mean squared difference below which nothing is lost: that of half a step of a byte.
 constexpr double kLeastLoss = 0.25 / (255.0 * 255.0);
 /// Of a triangle's area in the texture: what it has to keep, but for what others need.
@@ -31,6 +33,13 @@ constexpr double kRestored = 0.25;
 constexpr int kMostPasses = 100;
 /// Part of the texels that may show two places at once; rasterisation alone makes some.
 constexpr double kMostConflicts = 5e-3;
+
+/// So that it is baked at the size that it had, within reason.
+int oversampling(const WarpedImage& image) {
+  const int longest = std::max(image.width, image.height);
+  const int wanted = (image.image->width + image.width - 1) / image.width;
+  return std::clamp(std::min(wanted, kLongestBaked / longest), kLeastOversampling, kMostOversampling);
+}
 
 /// Twice the area, with a sign.
 double area(const AtlasFace& face, const std::vector<Vec2d>& at) {
@@ -193,8 +202,7 @@ class Warper {
     std::optional<TexelOrigins> origins;
     std::vector<UvSlopes> slopes;
     for (const WarpedImage& image : images_) {
-      const int factor = std::clamp((image.image->width + image.width - 1) / image.width, kLeastOversampling,
-                                    kMostOversampling);
+      const int factor = oversampling(image);
       const int width = factor * image.width, height = factor * image.height;
       if (!origins || origins->width != width || origins->height != height) {
         origins = texel_origins(result.to, from_, turns, width, height, context_);
