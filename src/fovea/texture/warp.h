@@ -62,7 +62,7 @@ struct WarpOptions {
   double rigidity = 0.1;
   /// The least importance, as a part of the greatest, 0 … 1: how far cells may be stretched.
   double floor = 0.05;
-  std::int64_t rounds = 300;  ///< Of each level, at most.
+  std::int64_t rounds = 100;  ///< Of each level, at most.
   double tolerance = 1e-3;    ///< A level is settled when no node moves farther, in cells.
 };
 OptionList describe(WarpOptions& options);
