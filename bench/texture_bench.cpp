@@ -264,89 +264,114 @@ void print_protocol(const std::vector<Subject>& subjects, const Request& request
 
 // --- Equal bytes ----------------------------------------------------------------------------------------
 
-/// Ours with no more bytes of images than `most`, near it; and at which scale.
+/// The model's images in files without loss, so that none is kept because it would grow.
+Model without_loss(Model model) {
+  for (EncodedImage& file : model.images) {
+    const ImageChange::State state = state_of(file);
+    if (state.width < 1 || state.mime_type == "image/ktx2") continue;
+    file.bytes = encode_png(decode_image(file.bytes));
+    file.mime_type = "image/png";
+  }
+  return model;
+}
+
+/// A model with smaller textures in files, which differ from the textures by `psnr_db`.
 struct Fit {
   Model model;
-  double scale = 0;
+  double psnr_db = 0;
   std::uint64_t bytes = 0;
 };
 
-Fit fitted(const Model& model, double scale, std::uint64_t most, const Request& request) {
-  constexpr int kTries = 5;
-  constexpr double kNear = 0.98;      // of the bytes
-  constexpr double kExponent = 1.5;   // bytes grow with less than the square of the scale
-  constexpr double kSafety = 0.0075;  // aimed below the limit
+/// `small` with files as near as no more than `most` bytes allow. No file is larger than that of `original`.
+Fit fitted(const Model& original, const Model& small, std::uint64_t most, const Request& request) {
+  constexpr int kTries = 7;
+  const std::vector<ImageUse> uses = image_uses(original);
   Fit best;
+  double low = 20, high = 60;
   for (int i = 0; i < kTries; ++i) {
-    Shrunk found = shrunk(model, scale, request.files, TexelMoves::balanced);
-    const std::uint64_t bytes = image_bytes(found.model);
-    if (bytes <= most && bytes > best.bytes) best = {std::move(found.model), scale, bytes};
-    if (static_cast<double>(best.bytes) >= kNear * static_cast<double>(most)) break;
-    const double part = static_cast<double>(most) / static_cast<double>(bytes);
-    const double next = std::min(1.0, scale * std::pow(part * (1 - kSafety), 1 / kExponent));
-    if (next == scale) break;
-    scale = next;
+    ImageOutputOptions output = request.files;
+    output.psnr_db = i == 0 ? request.files.psnr_db : (low + high) / 2;
+    Fit next{small, output.psnr_db, 0};
+    for (std::size_t n = 0; n < uses.size(); ++n) {
+      const EncodedImage& before = original.images[n];
+      EncodedImage& file = next.model.images[n];
+      std::optional<ImageOutput> found;
+      if (uses[n].is_used && !uses[n].is_ambiguous && state_of(before).width > 0)
+        found = encode_output(without_idle_alpha(decode_image(file.bytes), uses[n]), uses[n],
+                              before.mime_type, before.bytes.size(), output);
+      file.mime_type = found ? mime_type(found->format) : before.mime_type;
+      file.bytes = found ? std::move(found->texture.bytes) : before.bytes;
+    }
+    next.bytes = image_bytes(next.model);
+    (next.bytes <= most ? low : high) = next.psnr_db;
+    if (next.bytes <= most && next.bytes > best.bytes) best = std::move(next);
   }
   return best;
 }
 
 void print_equal_bytes(const std::vector<Subject>& subjects, const Request& request) {
+  constexpr std::array<const char*, 3> kNames{"plain", "filled", "ours"};
+  constexpr std::array kParts{2, 4, 8};
   fmt::print(
       "## Equal bytes\n\n"
-      "Textures alone: plainly resized against ours with no more bytes. In each cell plain / ours.\n\n"
-      "| model | side | ours | kB | PSNR base | MS-SSIM base | FLIP base | PSNR lit | MS-SSIM lit | FLIP lit "
-      "|\n"
-      "|---|--:|--:|---|---|---|---|---|---|---|\n");
+      "Textures alone, all resized to the same sides: plainly; from images that are filled between the "
+      "charts; and with texels moved, too. The last two are encoded as near as the bytes of the first "
+      "allow; dB is how near.\n\n"
+      "| model | side | way | kB | dB | PSNR base | MS-SSIM base | FLIP base | PSNR lit | MS-SSIM lit | FLIP "
+      "lit |\n"
+      "|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   struct Sum {
     double psnr = 0, ms_ssim = 0, log_flip = 0;
     int better = 0, worse = 0;
   };
-  std::array<std::array<Sum, 2>, 3> sums{};
-  constexpr std::array kParts{2, 4, 8};
+  std::array<std::array<std::array<Sum, 2>, 3>, 3> sums{};
   for (const Subject& subject : subjects) {
-    const Model model = subject.make();
+    const Model model = subject.make(), large = without_loss(model);
     for (std::size_t d = 0; d < kParts.size(); ++d) {
       const double scale = 1.0 / kParts[d];
       std::vector<Model> results{plainly_resized(model, scale, request.files)};
       const std::uint64_t most = image_bytes(results[0]);
-      Fit ours = fitted(model, scale, most, request);
-      if (ours.bytes == 0) {
-        fmt::print("| {} | 1/{} | – | {:.1f} / – |\n", subject.name, kParts[d],
-                   static_cast<double>(most) / 1000);
-        continue;
+      std::array<double, 3> near{request.files.psnr_db};
+      for (const TexelMoves moves : {TexelMoves::none, TexelMoves::balanced}) {
+        Fit fit = fitted(model, shrunk(large, scale, kWithoutLoss, moves).model, most, request);
+        near[results.size()] = fit.psnr_db;
+        results.push_back(fit.bytes > 0 ? std::move(fit.model) : model);
       }
-      results.push_back(std::move(ours.model));
-      keep(results[0], fmt::format("{}-{}-plain", subject.name, kParts[d]), request);
-      keep(results[1], fmt::format("{}-{}-ours", subject.name, kParts[d]), request);
       const std::vector<Comparison> found = compared(model, results, request);
-      fmt::print("| {} | 1/{} | 1/{:.2f} | {:.1f} / {:.1f} |", d == 0 ? subject.name : "", kParts[d],
-                 1 / ours.scale, static_cast<double>(most) / 1000, static_cast<double>(ours.bytes) / 1000);
-      for (std::size_t p = 0; p < 2; ++p) {
-        const ImageScores &plain = found[0].passes[p], &own = found[1].passes[p];
-        fmt::print(" {:.2f} / {:.2f} | {:.5f} / {:.5f} | {:.4f} / {:.4f} |", plain.psnr, own.psnr,
-                   plain.ms_ssim, own.ms_ssim, plain.flip, own.flip);
-        Sum& sum = sums[d][p];
-        sum.psnr += own.psnr - plain.psnr;
-        sum.ms_ssim += own.ms_ssim - plain.ms_ssim;
-        sum.log_flip += std::log(own.flip / plain.flip);
-        sum.better += own.psnr > plain.psnr;
-        sum.worse += own.psnr < plain.psnr;
+      for (std::size_t w = 0; w < results.size(); ++w) {
+        keep(results[w], fmt::format("{}-{}-{}", subject.name, kParts[d], kNames[w]), request);
+        fmt::print("| {} | {} | {} | {:.1f} | {:.1f} |", d + w == 0 ? subject.name : "",
+                   w == 0 ? fmt::format("1/{}", kParts[d]) : "", kNames[w],
+                   static_cast<double>(image_bytes(results[w])) / 1000, near[w]);
+        for (std::size_t p = 0; p < 2; ++p) {
+          const ImageScores &plain = found[0].passes[p], &own = found[w].passes[p];
+          fmt::print(" {:.2f} | {:.5f} | {:.4f} |", own.psnr, own.ms_ssim, own.flip);
+          Sum& sum = sums[d][w][p];
+          sum.psnr += own.psnr - plain.psnr;
+          sum.ms_ssim += own.ms_ssim - plain.ms_ssim;
+          sum.log_flip += std::log(own.flip / plain.flip);
+          sum.better += own.psnr > plain.psnr;
+          sum.worse += own.psnr < plain.psnr;
+        }
+        fmt::print("\n");
       }
-      fmt::print("\n");
       std::fflush(stdout);
     }
   }
   fmt::print(
-      "\nMeans: difference of PSNR (dB) and MS-SSIM, geometric mean of the ratio of FLIP; in how many "
-      "models PSNR is better, and worse.\n\n"
-      "| side | pass | PSNR | MS-SSIM | FLIP | better | worse |\n"
-      "|--:|---|--:|--:|--:|--:|--:|\n");
+      "\nMeans against plain: difference of PSNR (dB) and MS-SSIM, geometric mean of the ratio of FLIP; in "
+      "how many models PSNR is better, and worse.\n\n"
+      "| side | way | pass | PSNR | MS-SSIM | FLIP | better | worse |\n"
+      "|--:|---|---|--:|--:|--:|--:|--:|\n");
   const auto n = static_cast<double>(subjects.size());
   for (std::size_t d = 0; d < kParts.size(); ++d) {
-    for (std::size_t p = 0; p < 2; ++p) {
-      const Sum& sum = sums[d][p];
-      fmt::print("| 1/{} | {} | {:+.2f} | {:+.5f} | {:.3f} | {} | {} |\n", kParts[d], p == 0 ? "base" : "lit",
-                 sum.psnr / n, sum.ms_ssim / n, std::exp(sum.log_flip / n), sum.better, sum.worse);
+    for (std::size_t w = 1; w < kNames.size(); ++w) {
+      for (std::size_t p = 0; p < 2; ++p) {
+        const Sum& sum = sums[d][w][p];
+        fmt::print("| 1/{} | {} | {} | {:+.2f} | {:+.5f} | {:.3f} | {} | {} |\n", kParts[d], kNames[w],
+                   p == 0 ? "base" : "lit", sum.psnr / n, sum.ms_ssim / n, std::exp(sum.log_flip / n),
+                   sum.better, sum.worse);
+      }
     }
   }
   fmt::print("\n");
