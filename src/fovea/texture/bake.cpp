@@ -76,7 +76,9 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
   struct Nothing {};
   const auto nothing = [](std::uint32_t, const std::array<double, 3>&) { return Nothing{}; };
-  fill_undrawn(image, rasterized<Nothing>(faces, image.width, image.height, nothing, context).drawn, context);
+  auto drawn = rasterized<Nothing>(faces, image.width, image.height, nothing, context).drawn;
+  grow_drawn(drawn, image.width, image.height);
+  fill_undrawn(image, drawn, context);
 }
 
 }  // namespace fovea
