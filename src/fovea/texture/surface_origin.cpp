@@ -1,0 +1,118 @@
+#include "fovea/texture/surface_origin.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fovea {
+
+namespace {
+
+/// Of a triangle's longest edge: how far away the surface may be that it stands for.
+constexpr double kReach = 0.5;
+/// In texels: what comes from nearer stays where it is, as it was.
+constexpr double kStill = 0.5;
+
+/// What must not be mixed up: materials, and sides of the texture.
+std::uint32_t kind_of(const Model& model, const AtlasFace& face) {
+  const TriMesh& mesh = model.meshes[face.mesh].surface;
+  const bool mirrored = cross(face.uv[1] - face.uv[0], face.uv[2] - face.uv[0]) < 0;
+  const auto material = static_cast<std::uint32_t>(mesh.parts[mesh.face_part[face.face]].material + 1);
+  return 2 * material + (mirrored ? 1 : 0);
+}
+
+std::array<Vec3d, 3> points_of(const Model& model, const AtlasFace& face) {
+  const TriMesh& mesh = model.meshes[face.mesh].surface;
+  std::array<Vec3d, 3> points;
+  for (std::size_t k = 0; k < 3; ++k) points[k] = Vec3d(mesh.positions[mesh.triangles[face.face][k].index()]);
+  return points;
+}
+
+double longest_edge(const std::array<Vec3d, 3>& p) {
+  return std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])});
+}
+
+/// By how much normal maps turn from one frame to the other: from the old tangent towards the old bitangent.
+double turn(const TangentFrame& from, const TangentFrame& to) {
+  return std::atan2(dot(to.tangent, from.bitangent), dot(to.tangent, from.tangent));
+}
+
+}  // namespace
+
+SurfaceOrigin::SurfaceOrigin(const Model& original, const Atlas& original_atlas, const Model& simplified,
+                             const Atlas& simplified_atlas)
+    : original_faces_(atlas_faces(original, original_atlas)),
+      faces_(atlas_faces(simplified, simplified_atlas)),
+      original_frames_(original, original_faces_),
+      frames_(simplified, faces_),
+      targets_(original.meshes.size()) {
+  std::vector<std::vector<std::uint32_t>> kinds(targets_.size());
+  for (std::uint32_t f = 0; f < original_faces_.size(); ++f) {
+    const AtlasFace& face = original_faces_[f];
+    const TriMesh& mesh = original.meshes[face.mesh].surface;
+    Target& target = targets_[face.mesh];
+    if (target.surface.positions.empty()) target.surface.positions = mesh.positions;
+    const auto& t = mesh.triangles[face.face];
+    target.surface.triangles.push_back({t[0].value, t[1].value, t[2].value});
+    target.faces.push_back(f);
+    kinds[face.mesh].push_back(kind_of(original, face));
+  }
+  for (std::size_t m = 0; m < targets_.size(); ++m) {
+    if (!targets_[m].faces.empty())
+      targets_[m].tree = std::make_unique<FacingPoint>(targets_[m].surface, std::move(kinds[m]));
+  }
+  for (const AtlasFace& face : faces_) {
+    kinds_.push_back(kind_of(simplified, face));
+    points_.push_back(points_of(simplified, face));
+  }
+}
+
+std::optional<SurfaceOrigin::Place> SurfaceOrigin::place(std::uint32_t face,
+                                                         const std::array<double, 3>& weights) const {
+  const Target& target = targets_[faces_[face].mesh];
+  if (target.tree == nullptr) return {};
+  const std::array<Vec3d, 3>& p = points_[face];
+  FacingPoint::Query query;
+  query.point = p[0] * weights[0] + p[1] * weights[1] + p[2] * weights[2];
+  query.normal = frames_.normal(face, weights);
+  query.most = kReach * longest_edge(p);
+  query.kind = kinds_[face];
+  if (!(query.most > 0) || !(length(query.normal) > 0)) return {};
+  std::optional<ClosestPoint::Hit> hit = target.tree->along_normal(query);
+  if (!hit) hit = target.tree->nearest(query);
+  if (!hit) return {};
+  return Place{target.faces[hit->triangle], hit->weights};
+}
+
+TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
+                                    const Context& context) const {
+  const TangentFrames frames(model, to);
+  TexelOrigins result{width, height, {}, {}};
+  result.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  result.drawn.resize(result.texels.size(), 0);
+  const auto count = [&](std::uint32_t, const std::array<double, 3>&, std::size_t texel) {
+    result.drawn[texel] = static_cast<std::uint8_t>(std::min(result.drawn[texel] + 1, 2));
+  };
+  for_atlas_texels(to, width, height, count, context);
+  const auto find = [&](std::uint32_t face, const std::array<double, 3>& weights, std::size_t texel) {
+    TexelOrigin& origin = result.texels[texel];
+    if (origin.face != kInvalid) return;
+    const Vec2d own = uv_at(faces_[face], weights);
+    const TangentFrame frame = frames.at(face, weights);
+    origin = {{static_cast<float>(own.x), static_cast<float>(own.y)}, face, 0};
+    const std::optional<Place> found =
+        result.drawn[texel] == 1 ? place(face, weights) : std::optional<Place>();
+    if (!found) {
+      origin.turn = static_cast<float>(turn(frames_.at(face, weights), frame));
+      return;
+    }
+    origin.turn = static_cast<float>(turn(original_frames_.at(found->face, found->weights), frame));
+    const Vec2d at = uv_at(original_faces_[found->face], found->weights);
+    if (std::hypot((at.x - own.x) * width, (at.y - own.y) * height) < kStill) return;
+    origin.uv = {static_cast<float>(at.x), static_cast<float>(at.y)};
+  };
+  for_atlas_texels(to, width, height, find, context);
+  for (std::uint8_t& drawn : result.drawn) drawn = drawn != 0 ? 1 : 0;
+  return result;
+}
+
+}  // namespace fovea
