@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace fovea {
 
@@ -10,7 +11,11 @@ namespace {
 /// Of a triangle's longest edge: how far away the surface may be that it stands for.
 constexpr double kReach = 0.5;
 /// In texels: what comes from nearer stays where it is, as it was.
-constexpr double kStill = 0.5;
+constexpr float kStill = 0.5f;
+/// Of the image: how far apart places may be that triangles on one texel ask for.
+constexpr float kAgreeing = 0.03f;
+/// Stands for triangles on a texel that ask for different places.
+constexpr std::uint8_t kDisagree = 255;
 
 /// What must not be mixed up: materials, and sides of the texture.
 std::uint32_t kind_of(const Model& model, const AtlasFace& face) {
@@ -32,9 +37,11 @@ double longest_edge(const std::array<Vec3d, 3>& p) {
 }
 
 /// By how much normal maps turn from one frame to the other: from the old tangent towards the old bitangent.
-double turn(const TangentFrame& from, const TangentFrame& to) {
-  return std::atan2(dot(to.tangent, from.bitangent), dot(to.tangent, from.tangent));
+float turn(const TangentFrame& from, const TangentFrame& to) {
+  return static_cast<float>(std::atan2(dot(to.tangent, from.bitangent), dot(to.tangent, from.tangent)));
 }
+
+float distance(Vec2f a, Vec2f b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
 
@@ -83,35 +90,62 @@ std::optional<SurfaceOrigin::Place> SurfaceOrigin::place(std::uint32_t face,
   return Place{target.faces[hit->triangle], hit->weights};
 }
 
+TexelOrigin SurfaceOrigin::origin(std::uint32_t face, const std::array<double, 3>& weights,
+                                  const TangentFrame& frame) const {
+  const std::optional<Place> found = place(face, weights);
+  const Vec2d at = found ? uv_at(original_faces_[found->face], found->weights) : uv_at(faces_[face], weights);
+  const TangentFrame from =
+      found ? original_frames_.at(found->face, found->weights) : frames_.at(face, weights);
+  return {{static_cast<float>(at.x), static_cast<float>(at.y)}, face, turn(from, frame)};
+}
+
 TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
                                     const Context& context) const {
   const TangentFrames frames(model, to);
   TexelOrigins result{width, height, {}, {}};
   result.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   result.drawn.resize(result.texels.size(), 0);
-  const auto count = [&](std::uint32_t, const std::array<double, 3>&, std::size_t texel) {
-    result.drawn[texel] = static_cast<std::uint8_t>(std::min(result.drawn[texel] + 1, 2));
+  std::vector<std::uint8_t>& counts = result.drawn;
+  const auto own = [&](std::uint32_t face, const std::array<double, 3>& weights) {
+    const Vec2d uv = uv_at(faces_[face], weights);
+    return Vec2f{static_cast<float>(uv.x), static_cast<float>(uv.y)};
   };
-  for_atlas_texels(to, width, height, count, context);
-  const auto find = [&](std::uint32_t face, const std::array<double, 3>& weights, std::size_t texel) {
-    TexelOrigin& origin = result.texels[texel];
-    if (origin.face != kInvalid) return;
-    const Vec2d own = uv_at(faces_[face], weights);
-    const TangentFrame frame = frames.at(face, weights);
-    origin = {{static_cast<float>(own.x), static_cast<float>(own.y)}, face, 0};
-    const std::optional<Place> found =
-        result.drawn[texel] == 1 ? place(face, weights) : std::optional<Place>();
-    if (!found) {
-      origin.turn = static_cast<float>(turn(frames_.at(face, weights), frame));
+  const auto add = [&](std::uint32_t face, const std::array<double, 3>& weights, std::size_t texel) {
+    std::uint8_t& count = counts[texel];
+    if (count == kDisagree) return;
+    const TexelOrigin next = origin(face, weights, frames.at(face, weights));
+    TexelOrigin& mean = result.texels[texel];
+    if (count == 0) mean = next;
+    if (distance(mean.uv, next.uv) > kAgreeing || count + 1 == kDisagree) {
+      count = kDisagree;
+      mean.uv = own(face, weights);
       return;
     }
-    origin.turn = static_cast<float>(turn(original_frames_.at(found->face, found->weights), frame));
-    const Vec2d at = uv_at(original_faces_[found->face], found->weights);
-    if (std::hypot((at.x - own.x) * width, (at.y - own.y) * height) < kStill) return;
-    origin.uv = {static_cast<float>(at.x), static_cast<float>(at.y)};
+    const float part = 1.0f / static_cast<float>(++count);
+    mean.uv = mean.uv + (next.uv - mean.uv) * part;
+    mean.turn += std::remainder(next.turn - mean.turn, 2 * std::numbers::pi_v<float>) * part;
   };
-  for_atlas_texels(to, width, height, find, context);
-  for (std::uint8_t& drawn : result.drawn) drawn = drawn != 0 ? 1 : 0;
+  for_atlas_texels(to, width, height, add, context);
+  struct Nothing {};
+  const AtlasRaster<Nothing> covered = rasterized<Nothing>(
+      original_faces_, width, height, [](std::uint32_t, const std::array<double, 3>&) { return Nothing{}; },
+      context);
+  const auto is_covered = [&](Vec2f uv) {
+    const auto texel = [](float x, int side) {
+      return std::clamp(static_cast<int>(x * static_cast<float>(side)), 0, side - 1);
+    };
+    return covered.drawn[covered.index(texel(uv.x, width), texel(uv.y, height))] != 0;
+  };
+  const Vec2f size{static_cast<float>(width), static_cast<float>(height)};
+  const auto settle = [&](std::uint32_t face, const std::array<double, 3>& weights, std::size_t texel) {
+    TexelOrigin& origin = result.texels[texel];
+    if (origin.face != face) return;
+    const Vec2f at = own(face, weights), way = origin.uv - at;
+    const bool is_still = std::hypot(way.x * size.x, way.y * size.y) < kStill;
+    if (is_still || (counts[texel] > 1 && !is_covered(origin.uv))) origin.uv = at;
+  };
+  for_atlas_texels(to, width, height, settle, context);
+  for (std::uint8_t& count : counts) count = count != 0 ? 1 : 0;
   return result;
 }
 

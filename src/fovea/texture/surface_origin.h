@@ -45,12 +45,16 @@ class SurfaceOrigin {
 
   /// Where the texels of a new image come from in the original's, with the simpler surface's triangles at
   /// `to` in the new one; `model` is the simplified one with coordinates at `to`. Texels stay where they are
-  /// by their own coordinates if there is no place, if it is less than half a texel away, and where several
-  /// triangles lie. O(#texels log #F), parallel. Throws Error(cancelled).
+  /// by their own coordinates if there is no place, and if it is less than half a texel away. Where several
+  /// triangles lie (halves that share their texels, mostly) they get the mean of what these ask for, or stay
+  /// if that is far apart. O(#texels log #F), parallel. Throws Error(cancelled).
   TexelOrigins origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
                        const Context& context) const;
 
  private:
+  TexelOrigin origin(std::uint32_t face, const std::array<double, 3>& weights,
+                     const TangentFrame& frame) const;
+
   /// The triangles of one mesh that may be found.
   struct Target {
     Surface surface;
