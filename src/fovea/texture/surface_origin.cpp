@@ -17,12 +17,10 @@ constexpr float kAgreeing = 0.03f;
 /// Stands for triangles on a texel that ask for different places.
 constexpr std::uint8_t kDisagree = 255;
 
-/// What must not be mixed up: materials, and sides of the texture.
+/// Its material: what must not be mixed up.
 std::uint32_t kind_of(const Model& model, const AtlasFace& face) {
   const TriMesh& mesh = model.meshes[face.mesh].surface;
-  const bool mirrored = cross(face.uv[1] - face.uv[0], face.uv[2] - face.uv[0]) < 0;
-  const auto material = static_cast<std::uint32_t>(mesh.parts[mesh.face_part[face.face]].material + 1);
-  return 2 * material + (mirrored ? 1 : 0);
+  return static_cast<std::uint32_t>(mesh.parts[mesh.face_part[face.face]].material);
 }
 
 std::array<Vec3d, 3> points_of(const Model& model, const AtlasFace& face) {
@@ -39,6 +37,11 @@ double longest_edge(const std::array<Vec3d, 3>& p) {
 /// By how much normal maps turn from one frame to the other: from the old tangent towards the old bitangent.
 float turn(const TangentFrame& from, const TangentFrame& to) {
   return static_cast<float>(std::atan2(dot(to.tangent, from.bitangent), dot(to.tangent, from.tangent)));
+}
+
+bool are_mirrored(const TangentFrame& a, const TangentFrame& b) {
+  const auto side = [](const TangentFrame& f) { return dot(cross(f.normal, f.tangent), f.bitangent); };
+  return side(a) * side(b) < 0;
 }
 
 float distance(Vec2f a, Vec2f b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -96,7 +99,10 @@ TexelOrigin SurfaceOrigin::origin(std::uint32_t face, const std::array<double, 3
   const Vec2d at = found ? uv_at(original_faces_[found->face], found->weights) : uv_at(faces_[face], weights);
   const TangentFrame from =
       found ? original_frames_.at(found->face, found->weights) : frames_.at(face, weights);
-  return {{static_cast<float>(at.x), static_cast<float>(at.y)}, face, turn(from, frame)};
+  return {{static_cast<float>(at.x), static_cast<float>(at.y)},
+          face,
+          turn(from, frame),
+          are_mirrored(from, frame)};
 }
 
 TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
@@ -116,8 +122,11 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     const TexelOrigin next = origin(face, weights, frames.at(face, weights));
     TexelOrigin& mean = result.texels[texel];
     if (count == 0) mean = next;
-    if (distance(mean.uv, next.uv) > kAgreeing || count + 1 == kDisagree) {
+    if (distance(mean.uv, next.uv) > kAgreeing || mean.is_mirrored != next.is_mirrored ||
+        count + 1 == kDisagree) {
       count = kDisagree;
+      mean.turn = 0;
+      mean.is_mirrored = false;
       mean.uv = own(face, weights);
       return;
     }
@@ -142,7 +151,8 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     if (origin.face != face) return;
     const Vec2f at = own(face, weights), way = origin.uv - at;
     const bool is_still = std::hypot(way.x * size.x, way.y * size.y) < kStill;
-    if (is_still || (counts[texel] > 1 && !is_covered(origin.uv))) origin.uv = at;
+    if (is_still) origin.uv = at;
+    if (counts[texel] > 1 && !is_covered(origin.uv)) origin = {at, face};
   };
   for_atlas_texels(to, width, height, settle, context);
   for (std::uint8_t& count : counts) count = count != 0 ? 1 : 0;
