@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -83,6 +84,36 @@ AtlasRaster<T> rasterized(std::span<const AtlasFace> faces, int width, int heigh
       },
       context);
   return result;
+}
+
+/// Calls `visit(number, weights of corners, texel)` for the texels that are read along the edges of triangles
+/// by linear filters, also where a triangle is too thin to have a texel's centre; the weights are those of a
+/// place on the edge. Many times for the same texels; in the triangles' order. O(#F + texels along edges).
+template <class Visit>
+void for_edge_texels(std::span<const AtlasFace> faces, int width, int height, const Visit& visit) {
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const Vec2d from{faces[f].uv[k].x * width, faces[f].uv[k].y * height},
+          to{faces[f].uv[next].x * width, faces[f].uv[next].y * height};
+      const int steps = 1 + static_cast<int>(2 * std::hypot(to.x - from.x, to.y - from.y));
+      for (int i = 0; i <= steps; ++i) {
+        const double part = static_cast<double>(i) / steps;
+        std::array<double, 3> weights{};
+        weights[k] = 1 - part;
+        weights[next] = part;
+        const Vec2d at = from * (1 - part) + to * part;
+        const int left = static_cast<int>(std::floor(at.x - 0.5)),
+                  top = static_cast<int>(std::floor(at.y - 0.5));
+        for (int y = std::max(top, 0); y < std::min(top + 2, height); ++y) {
+          for (int x = std::max(left, 0); x < std::min(left + 2, width); ++x)
+            visit(
+                f, weights,
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+        }
+      }
+    }
+  }
 }
 
 }  // namespace fovea

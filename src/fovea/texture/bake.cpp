@@ -74,10 +74,28 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
   return result;
 }
 
-void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
+std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int width, int height,
+                                         const Context& context) {
   struct Nothing {};
   const auto nothing = [](std::uint32_t, const std::array<double, 3>&) { return Nothing{}; };
-  fill_undrawn(image, rasterized<Nothing>(faces, image.width, image.height, nothing, context).drawn);
+  std::vector<std::uint8_t> covered = rasterized<Nothing>(faces, width, height, nothing, context).drawn;
+  std::vector<AtlasFace> thin;
+  for (const AtlasFace& face : faces) {
+    const auto edge = [&](std::size_t k) {
+      const Vec2d d = face.uv[(k + 1) % 3] - face.uv[k];
+      return Vec2d{d.x * width, d.y * height};
+    };
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, std::hypot(edge(k).x, edge(k).y));
+    if (std::abs(cross(edge(0), edge(1))) < longest) thin.push_back(face);
+  }
+  for_edge_texels(thin, width, height,
+                  [&](std::uint32_t, const std::array<double, 3>&, std::size_t t) { covered[t] = 1; });
+  return covered;
+}
+
+void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
+  fill_undrawn(image, covered_texels(faces, image.width, image.height, context));
 }
 
 }  // namespace fovea

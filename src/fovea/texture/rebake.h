@@ -40,6 +40,8 @@ class AtlasRebake {
 
  private:
   const TexelOrigins& origins(int width, int height, const Context& context);
+  /// What no triangle covers, here or there, stays as it was: it goes on beyond charts as it was made to.
+  void keep_beyond(int width, int height, const Context& context);
 
   const Model& simplified_;
   SurfaceOrigin origin_;

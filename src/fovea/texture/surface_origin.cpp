@@ -2,11 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace fovea {
 
 namespace {
+double env(const char* n, double d) {
+  const char* e = std::getenv(n);
+  return e ? std::atof(e) : d;
+}
+const double kMode = env("MODE", 0), kStillE = env("STILL", 0.5), kAgreeE = env("AGREE", 0.03),
+             kReachE = env("REACH", 0.5), kRound = env("ROUND", 0);
 
 /// Of a triangle's longest edge: how far away the surface may be that it stands for.
 constexpr double kReach = 0.5;
@@ -87,8 +94,11 @@ std::optional<SurfaceOrigin::Place> SurfaceOrigin::place(std::uint32_t face,
   query.most = kReach * longest_edge(p);
   query.kind = kinds_[face];
   if (!(query.most > 0) || !(length(query.normal) > 0)) return {};
-  std::optional<ClosestPoint::Hit> hit = target.tree->along_normal(query);
-  if (!hit) hit = target.tree->nearest(query);
+  if (kMode == 2) query.normal = frames_.face_normal(face);
+  query.most = kReachE * longest_edge(p);
+  std::optional<ClosestPoint::Hit> hit;
+  if (kMode != 1) hit = target.tree->along_normal(query);
+  if (!hit && kMode != 3) hit = target.tree->nearest(query);
   if (!hit) return {};
   return Place{target.faces[hit->triangle], hit->weights};
 }
@@ -122,7 +132,7 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     const TexelOrigin next = origin(face, weights, frames.at(face, weights));
     TexelOrigin& mean = result.texels[texel];
     if (count == 0) mean = next;
-    if (distance(mean.uv, next.uv) > kAgreeing || mean.is_mirrored != next.is_mirrored ||
+    if (distance(mean.uv, next.uv) > kAgreeE || mean.is_mirrored != next.is_mirrored ||
         count + 1 == kDisagree) {
       count = kDisagree;
       mean.turn = 0;
@@ -150,11 +160,29 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     TexelOrigin& origin = result.texels[texel];
     if (origin.face != face) return;
     const Vec2f at = own(face, weights), way = origin.uv - at;
-    const bool is_still = std::hypot(way.x * size.x, way.y * size.y) < kStill;
-    if (is_still) origin.uv = at;
+    const bool is_still = std::hypot(way.x * size.x, way.y * size.y) < kStillE;
+    if (is_still)
+      origin.uv = at;
+    else if (kRound)
+      origin.uv = {at.x + std::round(way.x * size.x) / size.x, at.y + std::round(way.y * size.y) / size.y};
     if (counts[texel] > 1 && !is_covered(origin.uv)) origin = {at, face};
   };
   for_atlas_texels(to, width, height, settle, context);
+  const auto add_edge = [&](std::uint32_t face, const std::array<double, 3>& weights, std::size_t texel) {
+    if (counts[texel] != 0) return;
+    counts[texel] = 1;
+    TexelOrigin& beside = result.texels[texel];
+    beside = origin(face, weights, frames.at(face, weights));
+    const Vec2f at = own(face, weights), way = beside.uv - at;
+    if (std::hypot(way.x * size.x, way.y * size.y) >= kStillE) return;
+    // The texel's own centre, from a place that lies beside it.
+    const Vec2d here = uv_at(to[face], weights);
+    const auto x = static_cast<float>(texel % static_cast<std::size_t>(width)),
+               y = static_cast<float>(texel / static_cast<std::size_t>(width));
+    beside.uv = at + Vec2f{(x + 0.5f) / size.x - static_cast<float>(here.x),
+                           (y + 0.5f) / size.y - static_cast<float>(here.y)};
+  };
+  for_edge_texels(to, width, height, add_edge);
   for (std::uint8_t& count : counts) count = count != 0 ? 1 : 0;
   return result;
 }
