@@ -50,7 +50,9 @@ class Shrinker {
       : options_(options), field_(field), context_(context), result_{model, {}, {}} {
     if (options.rebake.original != nullptr) {
       originals_ = find_atlases(*options.rebake.original);
-      if (options.rebake.normals) new_maps_ = add_normal_maps(result_.model, find_atlases(model));
+      for (const Atlas& atlas : originals_)
+        if (atlas.fixed_because.empty()) bring_inside(result_.model, atlas);
+      if (options.rebake.normals) new_maps_ = add_normal_maps(result_.model, find_atlases(result_.model));
     }
     uses_ = image_uses(result_.model);
     for (const EncodedImage& image : result_.model.images) {

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <map>
 #include <numbers>
+#include <utility>
+
+#include "fovea/surface/disjoint_sets.h"
 
 namespace fovea {
 
 namespace {
-double env(const char* n, double d) {
-  const char* e = std::getenv(n);
-  return e ? std::atof(e) : d;
-}
-const double kMode = env("MODE", 0), kStillE = env("STILL", 0.5), kAgreeE = env("AGREE", 0.03),
-             kReachE = env("REACH", 0.5), kRound = env("ROUND", 0);
 
 /// Of a triangle's longest edge: how far away the surface may be that it stands for.
 constexpr double kReach = 0.5;
@@ -24,11 +21,46 @@ constexpr float kAgreeing = 0.03f;
 /// Stands for triangles on a texel that ask for different places.
 constexpr std::uint8_t kDisagree = 255;
 
-/// Its material: what must not be mixed up.
-std::uint32_t kind_of(const Model& model, const AtlasFace& face) {
-  const TriMesh& mesh = model.meshes[face.mesh].surface;
-  return static_cast<std::uint32_t>(mesh.parts[mesh.face_part[face.face]].material);
-}
+/// What must not be mixed up: materials, and the connected pieces of the original, so that what lies over
+/// something else does not show it. Pieces are known if the simpler mesh tells where its vertices come from.
+class Kinds {
+ public:
+  Kinds(const Model& original, const Model& simplified) {
+    for (std::size_t m = 0; m < original.meshes.size(); ++m) {
+      const TriMesh &from = original.meshes[m].surface, &to = simplified.meshes[m].surface;
+      std::vector<std::uint32_t>& before = original_pieces_.emplace_back(from.vertex_count(), 0);
+      std::vector<std::uint32_t>& after = pieces_.emplace_back(to.vertex_count(), 0);
+      if (from.source_vertex.empty() || from.source_vertex.size() != to.source_vertex.size()) continue;
+      DisjointSets sets(from.vertex_count());
+      for (const auto& t : from.triangles) {
+        sets.unite(t[0].index(), t[1].index());
+        sets.unite(t[0].index(), t[2].index());
+      }
+      for (std::size_t v = 0; v < before.size(); ++v) before[v] = sets.find(v);
+      for (std::size_t s = 0; s < from.source_vertex.size(); ++s) {
+        const VertexId v = from.source_vertex[s], w = to.source_vertex[s];
+        if (v.valid() && w.valid()) after[w.index()] = before[v.index()];
+      }
+    }
+  }
+  std::uint32_t of_original(const Model& model, const AtlasFace& face) {
+    return kind(model, face, original_pieces_[face.mesh]);
+  }
+  std::uint32_t of_simplified(const Model& model, const AtlasFace& face) {
+    return kind(model, face, pieces_[face.mesh]);
+  }
+
+ private:
+  std::uint32_t kind(const Model& model, const AtlasFace& face, const std::vector<std::uint32_t>& pieces) {
+    const TriMesh& mesh = model.meshes[face.mesh].surface;
+    const std::pair key{pieces[mesh.triangles[face.face][0].index()],
+                        mesh.parts[mesh.face_part[face.face]].material};
+    return numbers_.try_emplace(key, static_cast<std::uint32_t>(numbers_.size())).first->second;
+  }
+
+  std::vector<std::vector<std::uint32_t>> original_pieces_, pieces_;  // [#meshes][#V]
+  std::map<std::pair<std::uint32_t, int>, std::uint32_t> numbers_;
+};
 
 std::array<Vec3d, 3> points_of(const Model& model, const AtlasFace& face) {
   const TriMesh& mesh = model.meshes[face.mesh].surface;
@@ -62,6 +94,7 @@ SurfaceOrigin::SurfaceOrigin(const Model& original, const Atlas& original_atlas,
       original_frames_(original, original_faces_),
       frames_(simplified, faces_),
       targets_(original.meshes.size()) {
+  Kinds kind(original, simplified);
   std::vector<std::vector<std::uint32_t>> kinds(targets_.size());
   for (std::uint32_t f = 0; f < original_faces_.size(); ++f) {
     const AtlasFace& face = original_faces_[f];
@@ -71,14 +104,14 @@ SurfaceOrigin::SurfaceOrigin(const Model& original, const Atlas& original_atlas,
     const auto& t = mesh.triangles[face.face];
     target.surface.triangles.push_back({t[0].value, t[1].value, t[2].value});
     target.faces.push_back(f);
-    kinds[face.mesh].push_back(kind_of(original, face));
+    kinds[face.mesh].push_back(kind.of_original(original, face));
   }
   for (std::size_t m = 0; m < targets_.size(); ++m) {
     if (!targets_[m].faces.empty())
       targets_[m].tree = std::make_unique<FacingPoint>(targets_[m].surface, std::move(kinds[m]));
   }
   for (const AtlasFace& face : faces_) {
-    kinds_.push_back(kind_of(simplified, face));
+    kinds_.push_back(kind.of_simplified(simplified, face));
     points_.push_back(points_of(simplified, face));
   }
 }
@@ -94,11 +127,8 @@ std::optional<SurfaceOrigin::Place> SurfaceOrigin::place(std::uint32_t face,
   query.most = kReach * longest_edge(p);
   query.kind = kinds_[face];
   if (!(query.most > 0) || !(length(query.normal) > 0)) return {};
-  if (kMode == 2) query.normal = frames_.face_normal(face);
-  query.most = kReachE * longest_edge(p);
-  std::optional<ClosestPoint::Hit> hit;
-  if (kMode != 1) hit = target.tree->along_normal(query);
-  if (!hit && kMode != 3) hit = target.tree->nearest(query);
+  std::optional<ClosestPoint::Hit> hit = target.tree->along_normal(query);
+  if (!hit) hit = target.tree->nearest(query);
   if (!hit) return {};
   return Place{target.faces[hit->triangle], hit->weights};
 }
@@ -132,7 +162,7 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     const TexelOrigin next = origin(face, weights, frames.at(face, weights));
     TexelOrigin& mean = result.texels[texel];
     if (count == 0) mean = next;
-    if (distance(mean.uv, next.uv) > kAgreeE || mean.is_mirrored != next.is_mirrored ||
+    if (distance(mean.uv, next.uv) > kAgreeing || mean.is_mirrored != next.is_mirrored ||
         count + 1 == kDisagree) {
       count = kDisagree;
       mean.turn = 0;
@@ -160,11 +190,8 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     TexelOrigin& origin = result.texels[texel];
     if (origin.face != face) return;
     const Vec2f at = own(face, weights), way = origin.uv - at;
-    const bool is_still = std::hypot(way.x * size.x, way.y * size.y) < kStillE;
-    if (is_still)
-      origin.uv = at;
-    else if (kRound)
-      origin.uv = {at.x + std::round(way.x * size.x) / size.x, at.y + std::round(way.y * size.y) / size.y};
+    const bool is_still = std::hypot(way.x * size.x, way.y * size.y) < kStill;
+    if (is_still) origin.uv = at;
     if (counts[texel] > 1 && !is_covered(origin.uv)) origin = {at, face};
   };
   for_atlas_texels(to, width, height, settle, context);
@@ -174,7 +201,7 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     TexelOrigin& beside = result.texels[texel];
     beside = origin(face, weights, frames.at(face, weights));
     const Vec2f at = own(face, weights), way = beside.uv - at;
-    if (std::hypot(way.x * size.x, way.y * size.y) >= kStillE) return;
+    if (std::hypot(way.x * size.x, way.y * size.y) >= kStill) return;
     // The texel's own centre, from a place that lies beside it.
     const Vec2d here = uv_at(to[face], weights);
     const auto x = static_cast<float>(texel % static_cast<std::size_t>(width)),

@@ -21,9 +21,9 @@ namespace fovea {
 /// An atlas on two models, one of which was simplified to the other: finds for each place of the simpler
 /// surface the place of the original that it stands for, in the pose at rest.
 ///
-/// That is the place of the same mesh and material that lies nearest along the normal of the simpler surface
-/// and faces the same way, no farther than half the longest edge of the
-/// triangle; if there is none, the nearest in any direction; else there is none.
+/// That is the place of the same mesh, material and connected piece that lies nearest along the normal of the
+/// simpler surface and faces the same way, no farther than half the longest edge of the triangle; if there is
+/// none, the nearest in any direction; else there is none.
 class SurfaceOrigin {
  public:
   /// A place on the original.
