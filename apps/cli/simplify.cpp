@@ -7,9 +7,11 @@
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/auto_saliency.h"
 #include "fovea/simplify/salient.h"
+#include "fovea/texture/shrink.h"
 #include "input.h"
 #include "report.h"
 #include "shared_options.h"
+#include "shrink_text.h"
 #include "simplify_text.h"
 #include "text.h"
 #include "verb.h"
@@ -23,26 +25,33 @@ constexpr int kTargetMissed = 8;
 /// Where saliency comes from; presets in the order of SaliencyPreset.
 enum class SaliencySource { none, chosen, fovea, yang, lee, munaretti };
 
+enum class Rebake { off, on };
+
 class Simplify : public Verb {
  public:
   VerbText text() const override {
-    return {"simplify",
-            "collapse edges until a target is reached",
-            "Reads a model, collapses edges where it shows least, and writes the result with everything else "
-            "untouched. Of several targets the first reached stops. Exit code 8 says that the target was not "
-            "reached; the output is written all the same.",
-            {{"fovea simplify helmet.glb -o small.glb --ratio 0.1", "Keep 10 % of the triangles."},
-             {"fovea simplify scan.ply -o scan.glb --triangles 20000", "Keep 20,000 triangles."},
-             {"fovea simplify chair.glb -o chair-lean.glb --error 0.002",
-              "As few triangles as an error of 0.2 % of the diagonal allows."},
-             {"fovea simplify face.glb -o face-10.glb --ratio 0.1 --importance _IMPORTANCE",
-              "Spend the triangles where the vertex attribute _IMPORTANCE is high."},
-             {"fovea simplify vase.glb -o vase-small.glb --ratio 0.05 --saliency auto",
-              "Try what people look at in several ways and keep what looks best."},
-             {"fovea simplify shoe.glb -o shoe-web.glb --ratio 0.05 --metric image",
-              "Lose what shows least in pictures from all around; takes seconds."},
-             {"fovea simplify room.glb -o room-web.glb --ratio 0.2 --quantize --compression meshopt",
-              "Simplify and store compactly."}}};
+    return {
+        "simplify",
+        "collapse edges until a target is reached",
+        "Reads a model, collapses edges where it shows least, and writes the result with everything else "
+        "untouched, or, with --textures, with its images baked anew for what is left of the surface. Of "
+        "several targets the first reached stops. Exit code 8 says that the target was not "
+        "reached; the output is written all the same.",
+        {{"fovea simplify helmet.glb -o small.glb --ratio 0.1", "Keep 10 % of the triangles."},
+         {"fovea simplify scan.ply -o scan.glb --triangles 20000", "Keep 20,000 triangles."},
+         {"fovea simplify chair.glb -o chair-lean.glb --error 0.002",
+          "As few triangles as an error of 0.2 % of the diagonal allows."},
+         {"fovea simplify face.glb -o face-10.glb --ratio 0.1 --importance _IMPORTANCE",
+          "Spend the triangles where the vertex attribute _IMPORTANCE is high."},
+         {"fovea simplify vase.glb -o vase-small.glb --ratio 0.05 --saliency auto",
+          "Try what people look at in several ways and keep what looks best."},
+         {"fovea simplify shoe.glb -o shoe-web.glb --ratio 0.05 --metric image",
+          "Lose what shows least in pictures from all around; takes seconds."},
+         {"fovea simplify helmet.glb -o tiny.glb --ratio 0.05 --textures --max-texture 512 --bake-normals",
+          "Bake the textures for the result, at most 512 texels along a side, and the shape that went "
+          "into normal maps."},
+         {"fovea simplify room.glb -o room-web.glb --ratio 0.2 --quantize --compression meshopt",
+          "Simplify and store compactly."}}};
   }
 
   void declare(Arguments& arguments) override {
@@ -69,6 +78,16 @@ class Simplify : public Verb {
     std::erase_if(saliency, [](const Option& o) { return o.name != "key-poses" && o.name != "up"; });
     arguments.add("Saliency", saliency);
     arguments.add("Views", views);
+    arguments.add(
+        "Textures",
+        {{"textures",
+          "Bake the images anew for the simplified surface, and make them smaller if sizes are given.",
+          &textures_, ""},
+         {"rebake", "Whether --textures bakes anew, or only makes smaller.", choice(rebake_, {"off", "on"}),
+          ""}});
+    arguments.add("Textures", describe(shrink_options_.rebake));
+    arguments.add("Textures", describe(shrink_options_));
+    arguments.add("Warp", describe(shrink_options_.warp));
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
@@ -91,8 +110,9 @@ class Simplify : public Verb {
       importance =
           session.phase("saliency", input_, [&] { return with_saliency(model, importance, session); });
     }
-    const SimplifyResult result = session.phase(
+    SimplifyResult result = session.phase(
         "simplify", input_, [&] { return simplify(model, options_, importance, session.context); });
+    if (textures_) shrink_textures(model, result.model, session);
     const auto files = session.phase(
         "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
     const Snapshot after = snapshot(result.model, measure_output(files, result.model));
@@ -116,6 +136,7 @@ class Simplify : public Verb {
       return std::find(metrics.begin(), metrics.end(), options_.metric) != metrics.end();
     };
     need_format(arguments, write_options_);
+    need_textures(arguments);
     need_views(arguments, options_.views);
     arguments.need({{"metric-from"}, "--metric image, entropy or polygon-entropy", [is] {
                       return !is({Metric::quadric, Metric::visibility});
@@ -135,6 +156,15 @@ class Simplify : public Verb {
                     "a preset of --saliency",
                     [this] { return saliency_ > SaliencySource::chosen; },
                     "name one, for example --saliency yang; auto finds the strength itself"});
+  }
+
+  void need_textures(Arguments& arguments) const {
+    ShrinkOptions all;
+    std::vector<std::string> names{"rebake"};
+    for (const OptionList& list : {describe(all), describe(all.rebake), describe(all.warp)})
+      for (const Option& option : list) names.push_back(option.name);
+    arguments.need({names, "--textures", [this] { return textures_; }});
+    arguments.need({{"bake-normals"}, "--rebake on", [this] { return rebake_ == Rebake::on; }});
   }
 
   void check_request() const {
@@ -175,14 +205,25 @@ class Simplify : public Verb {
     return std::move(found.importance);
   }
 
+  void shrink_textures(const Model& original, Model& simplified, Session& session) {
+    if (rebake_ == Rebake::on) shrink_options_.rebake.original = &original;
+    Shrunk result = session.phase("textures", input_, [&] {
+      return fovea::shrink_textures(simplified, shrink_options_, {}, session.context);
+    });
+    simplified = result.model;
+    texture_text_ =
+        simplified.images.empty() ? "textures none\n" : tell_shrunk(session, result, rebake_ == Rebake::on);
+  }
+
   int tell(Session& session, const Snapshot& before, const Snapshot& after,
            const SimplifyResult& result) const {
     const bool reached = reached_target(result, options_);
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
     session.report["after"] = to_json(after);
     session.report["result"] = result_json(result, options_, reached);
-    session.print_summary(fmt::format("{} -> {}\n{}{}{}time     {}\n", printable(input_), printable(output_),
-                                      comparison_text(before, after), result_text(result, options_), chosen_,
+    session.print_summary(fmt::format("{} -> {}\n{}{}{}{}time     {}\n", printable(input_),
+                                      printable(output_), comparison_text(before, after),
+                                      result_text(result, options_), chosen_, texture_text_,
                                       session.spent_text()));
     if (reached) return 0;
     if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");
@@ -192,8 +233,12 @@ class Simplify : public Verb {
   std::string input_;
   std::string output_;
   std::string importance_;
-  std::string chosen_;  ///< A line about what `auto` chose.
+  std::string chosen_;        ///< A line about what `auto` chose.
+  std::string texture_text_;  ///< Lines about what became of textures.
   bool allow_miss_ = false;
+  bool textures_ = false;
+  Rebake rebake_ = Rebake::on;
+  ShrinkOptions shrink_options_;
   SaliencySource saliency_ = SaliencySource::none;
   SaliencyOptions saliency_options_;
   SalientOptions salient_options_;

@@ -13,29 +13,13 @@
 #include "input.h"
 #include "report.h"
 #include "shared_options.h"
+#include "shrink_text.h"
 #include "text.h"
 #include "verb.h"
 
 namespace fovea::cli {
 
 namespace {
-
-std::string format_name(const std::string& mime_type) {
-  return mime_type.rfind("image/", 0) == 0 ? mime_type.substr(6) : "unknown";
-}
-
-std::string state_text(const ImageChange::State& s) {
-  return fmt::format("{} × {} {}, {}", s.width, s.height, format_name(s.mime_type), bytes_text(s.bytes));
-}
-
-Json state_json(const ImageChange::State& s) {
-  return {{"mime_type", s.mime_type}, {"width", s.width}, {"height", s.height}, {"bytes", s.bytes}};
-}
-
-std::string name_of(const Model& model, std::size_t image) {
-  const std::string& name = model.images[image].name;
-  return name.empty() ? fmt::format("image {}", image) : printable(name);
-}
 
 /// Where saliency comes from; presets in the order of SaliencyPreset.
 enum class SaliencySource { none, fovea, yang, lee, munaretti };
@@ -180,52 +164,9 @@ class TextureVerb : public Verb {
   void tell(Session& session, const Snapshot& before, const Snapshot& after, const Shrunk& result) const {
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
     session.report["after"] = to_json(after);
-    Json& images = session.report["images"] = Json::array();
-    TextTable table("lll");
-    for (std::size_t i = 0; i < result.images.size(); ++i) {
-      const ImageChange& change = result.images[i];
-      const bool encoded = change.psnr_db != 0;
-      images.push_back({{"image", i},
-                        {"name", result.model.images[i].name},
-                        {"before", state_json(change.before)},
-                        {"after", state_json(change.after)},
-                        {"psnr_db", encoded ? number_json(change.psnr_db) : Json()},
-                        {"kept_because", change.kept_because}});
-      std::string what = "as it was";
-      if (!change.kept_because.empty()) what += ": " + printable(change.kept_because);
-      if (encoded) what = "-> " + state_text(change.after) + encoding_text(change.psnr_db);
-      table.row({name_of(result.model, i), state_text(change.before), what});
-    }
-    session.print_summary(fmt::format("{} -> {}\n{}{}{}time     {}\n", printable(input_), printable(output_),
-                                      comparison_text(before, after), table.text(0),
-                                      tell_atlases(session, result.atlases), session.spent_text()));
-  }
-
-  static std::string tell_atlases(Session& session, const std::vector<AtlasChange>& atlases) {
-    Json& list = session.report["atlases"] = Json::array();
-    std::string text;
-    for (const AtlasChange& atlas : atlases) {
-      const bool measured = atlas.plain_loss > 0;
-      list.push_back({{"images", atlas.images},
-                      {"fixed_because", atlas.fixed_because},
-                      {"floor", atlas.floor},
-                      {"rounds", atlas.rounds},
-                      {"last_move_cells", atlas.last_move},
-                      {"settled", atlas.settled},
-                      {"loss", measured ? number_json(atlas.loss) : Json()},
-                      {"plain_loss", measured ? number_json(atlas.plain_loss) : Json()}});
-      const std::string what = atlas.fixed_because.empty()
-                                   ? fmt::format("moved, which loses {:.0f} % of what resizing alone would",
-                                                 100 * atlas.loss / atlas.plain_loss)
-                                   : fmt::format("not moved: {}", printable(atlas.fixed_because));
-      text += fmt::format("texels   of image{} {}: {}\n", atlas.images.size() > 1 ? "s" : "",
-                          fmt::join(atlas.images, ", "), what);
-    }
-    return text;
-  }
-
-  static std::string encoding_text(double psnr_db) {
-    return std::isfinite(psnr_db) ? fmt::format(" ({:.1f} dB)", psnr_db) : " (without loss)";
+    session.print_summary(fmt::format("{} -> {}\n{}{}time     {}\n", printable(input_), printable(output_),
+                                      comparison_text(before, after), tell_shrunk(session, result, false),
+                                      session.spent_text()));
   }
 
   std::string input_;

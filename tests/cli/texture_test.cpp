@@ -135,5 +135,60 @@ TEST_F(TextureVerb, AModelWithoutTexturesComesThrough) {
   EXPECT_EQ(texture({square, "-o", out("square.glb"), "--texture-scale", "0.5"}).code, 0);
 }
 
+TEST_F(TextureVerb, SimplifyBakesTexturesAnew) {
+  const Outcome outcome =
+      fovea({"simplify", vase_, "-o", out("baked.glb"), "--ratio", "0.1", "--metric", "quadric", "--textures",
+             "--texture-scale", "0.5", "--bake-normals", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  ASSERT_FALSE(json["atlases"].empty());
+  EXPECT_EQ(json["atlases"][0]["not_rebaked_because"], "");
+  EXPECT_GT(json["atlases"][0]["rebaked_texels"], 0);
+  EXPECT_LT(json["images"][0]["after"]["bytes"], json["images"][0]["before"]["bytes"]);
+  const Model before = model(vase_), after = model(out("baked.glb"));
+  EXPECT_GE(after.images.size(), before.images.size());
+  EXPECT_TRUE(after.materials[0].normal);
+}
+
+TEST_F(TextureVerb, SimplifyCanLeaveTexturesAlone) {
+  const std::vector<std::string> words{"simplify", vase_,      "-o",      out("small.glb"), "--ratio",
+                                       "0.1",      "--metric", "quadric", "--force",        "--json"};
+  EXPECT_FALSE(fovea(words).json().contains("images"));
+  const Model before = model(vase_);
+  EXPECT_EQ(model(out("small.glb")).images[0].bytes, before.images[0].bytes);
+  std::vector<std::string> smaller = words;
+  smaller.insert(smaller.end(), {"--textures", "--rebake", "off", "--max-texture", "64"});
+  const nlohmann::json json = fovea(smaller).json();
+  EXPECT_EQ(json["images"][0]["after"]["width"], 64);
+  EXPECT_FALSE(json["atlases"][0].contains("rebaked_texels"));
+}
+
+TEST_F(TextureVerb, OptionsOfTexturesNeedThem) {
+  for (const std::vector<std::string>& extra : {std::vector<std::string>{"--max-texture", "64"},
+                                                {"--bake-normals"},
+                                                {"--rebake", "off"},
+                                                {"--warp", "none"},
+                                                {"--texture-psnr", "30"},
+                                                {"--warp-cells", "8"}}) {
+    std::vector<std::string> words{"simplify", vase_, "-o", out("bad.glb"), "--ratio", "0.5"};
+    words.insert(words.end(), extra.begin(), extra.end());
+    const Outcome outcome = fovea(words);
+    EXPECT_EQ(outcome.code, 2) << extra[0];
+    EXPECT_THAT(outcome.err, HasSubstr("--textures")) << extra[0];
+  }
+  const Outcome outcome = fovea({"simplify", vase_, "-o", out("bad.glb"), "--ratio", "0.5", "--textures",
+                                 "--rebake", "off", "--bake-normals"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--rebake"));
+}
+
+TEST_F(TextureVerb, SimplifyWithoutImagesSaysThatThereAreNone) {
+  const std::string square = folder_.write("square.obj", square_obj());
+  const Outcome outcome =
+      fovea({"simplify", square, "-o", out("square.glb"), "--ratio", "1", "--textures", "--bake-normals"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("textures none"));
+}
+
 }  // namespace
 }  // namespace fovea::test

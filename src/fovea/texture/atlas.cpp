@@ -26,6 +26,8 @@ using Json = nlohmann::json;
 
 /// Of an image: how far coordinates may lie beyond it and still count as inside.
 constexpr double kBeyond = 2e-3;
+/// And how far, to be brought back inside.
+constexpr double kAstray = 0.25;
 
 /// The materials that a part can have: its own and those of its variants (KHR_materials_variants).
 std::set<int> materials_of(const Model& model, const Part& part) {
@@ -181,15 +183,15 @@ class Charts {
     return {static_cast<double>(uv[0]), static_cast<double>(uv[1])};
   }
   /// Whole repeats of the image to the one in which the value's chart lies.
-  Vec2d repeat(std::size_t v) {
+  Vec2d repeat(std::size_t v, double beyond = kBeyond) {
     const std::uint32_t chart = sets_.find(v);
-    return {repeat(low_[chart].x, high_[chart].x), repeat(low_[chart].y, high_[chart].y)};
+    return {repeat(low_[chart].x, high_[chart].x, beyond), repeat(low_[chart].y, high_[chart].y, beyond)};
   }
 
  private:
-  static double repeat(double low, double high) {
+  static double repeat(double low, double high, double beyond) {
     const double first = std::floor((low + high) / 2);
-    return low >= first - kBeyond && high <= first + 1 + kBeyond ? first : 0;
+    return low >= first - beyond && high <= first + 1 + beyond ? first : 0;
   }
 
   const AttributeLayer& layer_;
@@ -289,6 +291,30 @@ Model with_moved_coordinates(const Model& model, const Atlas& atlas, std::span<c
     }
   }
   return result;
+}
+
+void bring_inside(Model& model, const Atlas& atlas) {
+  std::map<std::pair<std::uint32_t, int>, std::set<std::uint32_t>> parts_of;
+  for (const AtlasPart& part : atlas.parts) parts_of[{part.mesh, part.uv_set}].insert(part.part);
+  for (const auto& [key, parts] : parts_of) {
+    TriMesh& mesh = model.meshes[key.first].surface;
+    AttributeLayer* layer = mesh.find(Semantic::uv, key.second);
+    if (layer == nullptr) continue;
+    Charts charts(mesh, *layer);
+    for (std::size_t c = 0; c < layer->corner_value.size(); ++c) {
+      const ValueId id = layer->corner_value[c];
+      if (!id.valid() || !parts.contains(mesh.face_part[c / 3])) continue;
+      const Vec2d repeat = charts.repeat(id.index(), kAstray);
+      const auto inside = [](float x, double first) {
+        return std::clamp(x, static_cast<float>(first), static_cast<float>(first + 1));
+      };
+      float* uv = layer->value(id);
+      if (std::abs(static_cast<double>(uv[0]) - repeat.x - 0.5) <= 0.5 + kAstray)
+        uv[0] = inside(uv[0], repeat.x);
+      if (std::abs(static_cast<double>(uv[1]) - repeat.y - 0.5) <= 0.5 + kAstray)
+        uv[1] = inside(uv[1], repeat.y);
+    }
+  }
 }
 
 }  // namespace fovea

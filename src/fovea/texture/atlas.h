@@ -54,4 +54,8 @@ std::vector<AtlasFace> atlas_faces(const Model& model, const Atlas& atlas);
 Model with_moved_coordinates(const Model& model, const Atlas& atlas, std::span<const AtlasFace> from,
                              std::span<const AtlasFace> to);
 
+/// Brings coordinates that lie up to a quarter of the image beyond it, as simplification may leave them, back
+/// to its border, each chart to its repeat. O(#F).
+void bring_inside(Model& model, const Atlas& atlas);
+
 }  // namespace fovea

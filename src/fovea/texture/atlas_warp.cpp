@@ -7,6 +7,7 @@
 
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
+#include "fovea/texture/surface_origin.h"
 #include "fovea/texture/tangent_turn.h"
 #include "fovea/texture/texel_loss.h"
 
@@ -150,10 +151,11 @@ ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
 class Warper {
  public:
   Warper(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
-         std::span<const VertexField> field, Context& context)
+         std::span<const VertexField> field, const SurfaceOrigin* origin, Context& context)
       : model_(model),
         atlas_(atlas),
         images_(images),
+        origin_(origin),
         context_(context),
         from_(atlas_faces(model, atlas)),
         maps_(texture_importance(model, atlas, field, kMapSide, context)) {}
@@ -199,7 +201,7 @@ class Warper {
       for (std::size_t k = 0; k < 3; ++k) face.uv[k] = at[face.value[k]];
     result.model = with_moved_coordinates(model_, atlas_, from_, result.to);
     const auto turns = tangent_turns(model_, from_, result.to);
-    std::optional<TexelOrigins> origins;
+    std::optional<TexelOrigins> origins, originals;
     std::vector<UvSlopes> slopes;
     for (const WarpedImage& image : images_) {
       const int factor = oversampling(image);
@@ -208,8 +210,12 @@ class Warper {
         origins = texel_origins(result.to, from_, turns, width, height, context_);
         slopes = texel_slopes(result.to, from_, width, height);
         if (conflicts(from_, result.to, *origins) > kMostConflicts) return std::nullopt;
+        if (origin_ != nullptr)
+          originals = origin_->origins(result.model, result.to, width, height, context_);
       }
-      const Image8 large = baked(*image.image, image.meaning, *origins, slopes, context_);
+      const Image8 large = image.original != nullptr
+                               ? baked(*image.original, image.meaning, *originals, slopes, context_)
+                               : baked(*image.image, image.meaning, *origins, slopes, context_);
       result.images.push_back(
           resized(large, image.width, image.height, image.meaning, Wrap::clamp, Wrap::clamp, context_));
     }
@@ -241,6 +247,7 @@ class Warper {
   const Model& model_;
   const Atlas& atlas_;
   std::span<const WarpedImage> images_;
+  const SurfaceOrigin* origin_;
   Context& context_;
   std::vector<AtlasFace> from_;
   TextureImportance maps_;
@@ -251,8 +258,8 @@ class Warper {
 
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
-                     bool measured, Context& context) {
-  Warper warper(model, atlas, images, field, context);
+                     bool measured, Context& context, const SurfaceOrigin* origin) {
+  Warper warper(model, atlas, images, field, origin, context);
   AtlasWarp best = warper.unmoved();
   best.model = model;
   const double plain_loss = best.loss;

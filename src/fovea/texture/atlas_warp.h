@@ -16,6 +16,8 @@
 
 namespace fovea {
 
+class SurfaceOrigin;
+
 /// What a warp gives texels to.
 enum class WarpAim {
   balanced,   ///< What the wanted size would lose, times how large it shows and how much it is looked at.
@@ -28,6 +30,8 @@ struct WarpedImage {
   const Image8* image = nullptr;  ///< What no triangle covers filled (`fill_between`).
   TexelMeaning meaning;
   int width = 0, height = 0;  ///< Wanted.
+  /// What `image` was baked from for a simpler surface, to be baked from again; null if it was not.
+  const Image8* original = nullptr;
 };
 
 /// A way to move the texels of an atlas.
@@ -50,10 +54,12 @@ struct AtlasWarp {
 /// goes until a tenth is gained over not moving, and what loses least is taken. If no warp is, images are
 /// `resized` from the filled ones.
 ///
+/// `origin`: where places of a simplified surface are on its original, for images that have one.
+///
 /// `field` as for `texture_importance`. Cost: that of one bake, or as many as are tried. Throws what `warp`
 /// throws.
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
-                     bool measured, Context& context);
+                     bool measured, Context& context, const SurfaceOrigin* origin = nullptr);
 
 }  // namespace fovea

@@ -18,11 +18,12 @@ constexpr int kAnisotropy = 4;
 
 std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255 + 0.5f); }
 
-/// A normal seen from a frame that has turned by `angle`.
-Rgba turned(Rgba normal, float angle) {
-  if (angle == 0) return normal;
+/// A normal seen from the frame of a texel.
+Rgba turned(Rgba normal, const TexelOrigin& origin) {
+  if (origin.turn == 0 && !origin.is_mirrored) return normal;
+  const float angle = origin.turn, side = origin.is_mirrored ? -0.5f : 0.5f;
   const float c = std::cos(angle), s = std::sin(angle), x = 2 * normal.r - 1, y = 2 * normal.g - 1;
-  return {0.5f + 0.5f * (c * x + s * y), 0.5f + 0.5f * (c * y - s * x), normal.b, normal.a};
+  return {0.5f + 0.5f * (c * x + s * y), 0.5f + side * (c * y - s * x), normal.b, normal.a};
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
                               if (origins.drawn[i] == 0) continue;
                               const TexelOrigin& origin = origins.texels[i];
                               Rgba value = map.sample(origin.uv, slopes[origin.face], sampler, kAnisotropy);
-                              if (is_normal) value = turned(value, origin.turn);
+                              if (is_normal) value = turned(value, origin);
                               std::uint8_t* out = result.at(x, static_cast<int>(y));
                               const float colors[] = {value.r, value.g, value.b};
                               const int alpha = image.channels % 2 == 0 ? image.channels - 1 : image.channels;
@@ -73,12 +74,30 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
   return result;
 }
 
-void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
+std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int width, int height,
+                                         const Context& context) {
   struct Nothing {};
   const auto nothing = [](std::uint32_t, const std::array<double, 3>&) { return Nothing{}; };
-  auto drawn = rasterized<Nothing>(faces, image.width, image.height, nothing, context).drawn;
-  grow_drawn(drawn, image.width, image.height);
-  fill_undrawn(image, drawn, context);
+  std::vector<std::uint8_t> covered = rasterized<Nothing>(faces, width, height, nothing, context).drawn;
+  std::vector<AtlasFace> thin;
+  for (const AtlasFace& face : faces) {
+    const auto edge = [&](std::size_t k) {
+      const Vec2d d = face.uv[(k + 1) % 3] - face.uv[k];
+      return Vec2d{d.x * width, d.y * height};
+    };
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, std::hypot(edge(k).x, edge(k).y));
+    if (std::abs(cross(edge(0), edge(1))) < longest) thin.push_back(face);
+  }
+  for_edge_texels(thin, width, height,
+                  [&](std::uint32_t, const std::array<double, 3>&, std::size_t t) { covered[t] = 1; });
+  return covered;
+}
+
+void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
+  std::vector<std::uint8_t> known = covered_texels(faces, image.width, image.height, context);
+  grow_drawn(known, image.width, image.height);
+  fill_undrawn(image, known, context);
 }
 
 }  // namespace fovea

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,14 @@ std::vector<UvSlopes> texel_slopes(std::span<const AtlasFace> to, std::span<cons
 Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigins& origins,
              std::span<const UvSlopes> slopes, const Context& context);
 
-/// The image with all that no triangle covers filled from what is around, its colours beyond the triangles'
-/// borders among them; but for the texels beside those that triangles cover, which are mixed into what shows.
-/// In place. O(#F + #texels), parallel.
+/// 1 for texels that triangles show: those whose centre lies in one, and those along triangles that are less
+/// than a texel high. [height × width]. O(#F + #texels), parallel.
+std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int width, int height,
+                                         const Context& context);
+
+/// The image with all that no triangle covers (`covered_texels`) filled from what is around, its colours
+/// beyond the triangles' borders among them; but for the texels beside those that are covered, which are mixed
+/// into what shows. In place. O(#F + #texels), parallel.
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context);
 
 }  // namespace fovea

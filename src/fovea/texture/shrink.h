@@ -23,13 +23,22 @@ enum class TexelMoves {
   frequency,  ///< As WarpAim::frequency, wherever it folds nothing.
 };
 
+/// Whether images are baked anew for a surface that was simplified.
+struct RebakeOptions {
+  const Model* original = nullptr;  ///< What the model was simplified from; null for no baking.
+  bool normals = false;  ///< Normal maps take over the original's shading, new ones where there are none.
+};
+OptionList describe(RebakeOptions& options);
+
 struct ShrinkOptions {
   double scale = 1;           ///< Of each side, above 0 up to 1.
   std::int64_t max_side = 0;  ///< Texels along the longer side at most; 0 for no limit.
   ImageOutputOptions output;
   TexelMoves moves = TexelMoves::balanced;
   WarpOptions warp;
+  RebakeOptions rebake;
 };
+/// Of warp and rebake they have lists of their own.
 OptionList describe(ShrinkOptions& options);
 
 /// What became of the texels of an atlas whose images change.
@@ -43,6 +52,8 @@ struct AtlasChange {
   double loss = 0, plain_loss = 0;  ///< As AtlasWarp's; 0 where nothing was measured,
   TextureImportance maps;           ///< and then empty, as
   ImageF importance;                ///< this is.
+  std::string not_rebaked_because;  ///< Empty if its images were baked anew, or if nobody asked for it.
+  double rebaked_texels = 0;        ///< Part of the texels under triangles that then came from elsewhere.
 };
 
 struct Shrunk {
@@ -59,6 +70,11 @@ struct Shrunk {
 /// from what is around, so that nothing comes in from between the charts. Then they are encoded to an error
 /// (image_output.h).
 ///
+/// With `RebakeOptions::original` images are baked anew for a surface that was simplified: each texel shows
+/// what the original had at the place that it stands for (surface_origin.h), wherever it has moved to. An
+/// image that gets no fewer texels then stays unless its new file shows the simpler surface better than the
+/// old one did. With `normals` also normal maps are made (normal_bake.h).
+///
 /// An image's file never grows. Where it would, quality is lowered if the format has one; else texels stay
 /// where they were and the image what it was. Images also stay, and are reported ("image-kept"), if no
 /// material uses them, if they are read in more than one way, and if they cannot be decoded (KTX2, damaged).
@@ -66,7 +82,7 @@ struct Shrunk {
 ///
 /// `field` [#meshes][#V] says how much is looked at, 0 … 1; empty for alike everywhere. One atlas after the
 /// other, each in parallel, all of its images in memory. Throws Error(usage) for options out of range and for
-/// a field of another model, Error(cancelled).
+/// a field or an original of another model, Error(cancelled).
 Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
                        Context& context);
 

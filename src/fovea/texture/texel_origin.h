@@ -16,7 +16,8 @@ namespace fovea {
 struct TexelOrigin {
   Vec2f uv;                       ///< In the old image: 0 … 1, v down.
   std::uint32_t face = kInvalid;  ///< Of the list that was drawn.
-  float turn = 0;                 ///< By how much normal maps turn on the way (tangent_turn.h), in radians.
+  float turn = 0;                 ///< By how much normal maps turn on the way (tangent_turn.h), in radians,
+  bool is_mirrored = false;       ///< and whether their green turns over then.
 };
 using TexelOrigins = AtlasRaster<TexelOrigin>;
 
@@ -34,7 +35,7 @@ inline TexelOrigins texel_origins(std::span<const AtlasFace> to, std::span<const
       to, width, height,
       [&](std::uint32_t face, const std::array<double, 3>& weights) {
         const Vec2d at = uv_at(from[face], weights);
-        TexelOrigin origin{{static_cast<float>(at.x), static_cast<float>(at.y)}, face, 0};
+        TexelOrigin origin{{static_cast<float>(at.x), static_cast<float>(at.y)}, face};
         if (!turns.empty()) {
           for (std::size_t k = 0; k < 3; ++k) origin.turn += static_cast<float>(weights[k]) * turns[face][k];
         }

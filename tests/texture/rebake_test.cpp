@@ -1,0 +1,190 @@
+#include "fovea/texture/rebake.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fovea/io/image_codec.h"
+#include "fovea/texture/shrink.h"
+#include "support/meshes.h"
+#include "support/pictures.h"
+#include "support/reading.h"
+#include "support/textured.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kAmplitude = 0.04;
+
+/// A bumpy square over [0, 1]², and a flat one with badly fitted coordinates: u = 0.1 + 0.8 x.
+struct Squares {
+  Model original, simplified;
+};
+Squares squares(int images) {
+  Squares s{test::textured(test::wavy_grid(48, 48, kAmplitude), images),
+            test::textured(test::wavy_grid(1, 1, kAmplitude), images)};
+  TriMesh& flat = s.simplified.meshes[0].surface;
+  AttributeLayer& uv = *flat.find(Semantic::uv);
+  for (std::size_t i = 0; i < uv.values.size(); i += 2) uv.values[i] = 0.1f + 0.8f * uv.values[i];
+  AttributeLayer& normals = *flat.find(Semantic::normal);
+  for (std::size_t i = 0; i < normals.values.size(); ++i) normals.values[i] = i % 3 == 2 ? 1 : 0;
+  return s;
+}
+
+ShrinkOptions rebake_of(const Model& original, bool normals = false) {
+  ShrinkOptions options;
+  options.moves = TexelMoves::none;
+  options.rebake = {&original, normals};
+  return options;
+}
+
+Shrunk shrink(const Model& model, const ShrinkOptions& options, int threads = 1) {
+  Context context;
+  context.threads = threads;
+  return shrink_textures(model, options, {}, context);
+}
+
+/// The normal of the bumpy square.
+Vec3d normal_at(double x, double y) {
+  const double w = 2 * std::numbers::pi;
+  return normalized(Vec3d{-kAmplitude * w * std::cos(w * x) * std::sin(w * y),
+                          -kAmplitude * w * std::sin(w * x) * std::cos(w * y), 1});
+}
+
+TEST(Rebake, OneImageThatCannotBeReadLosesNoOther) {
+  Squares s = squares(2);
+  for (Model* model : {&s.original, &s.simplified})
+    model->images[1].bytes.resize(model->images[1].bytes.size() / 2);
+  ShrinkOptions options = rebake_of(s.original);
+  options.output.format = TextureOutput::webp;
+  const Shrunk found = shrink(s.simplified, options);
+  EXPECT_EQ(found.images[0].after.mime_type, "image/webp");
+  EXPECT_NE(found.model.images[0].bytes, s.simplified.images[0].bytes);
+  EXPECT_EQ(found.model.images[1], s.simplified.images[1]);
+  EXPECT_NE(found.images[1].kept_because, "");
+  EXPECT_GT(found.atlases.at(0).rebaked_texels, 0.5);
+}
+
+TEST(Rebake, FilesDoNotGrowAndWhatShowsNoMoreStays) {
+  const Squares s = squares(1);
+  const Shrunk same = shrink(s.original, rebake_of(s.original));
+  EXPECT_EQ(same.model.images, s.original.images);
+  EXPECT_NE(same.images[0].kept_because, "");
+  const Shrunk baked = shrink(s.simplified, rebake_of(s.original));
+  EXPECT_LE(baked.model.images[0].bytes.size(), s.simplified.images[0].bytes.size());
+}
+
+TEST(Rebake, NormalsBecomeAMapWhereThereIsNone) {
+  const Squares s = squares(1);
+  const Shrunk found = shrink(s.simplified, rebake_of(s.original, true));
+  const Model& model = found.model;
+  // Elements are only added.
+  ASSERT_EQ(model.images.size(), 2u);
+  ASSERT_EQ(model.textures.size(), 2u);
+  EXPECT_EQ(model.textures[0].image, 0);
+  ASSERT_TRUE(model.materials[0].normal);
+  EXPECT_EQ(model.materials[0].normal->texture, 1);
+  EXPECT_EQ(found.images.size(), 2u);
+  check(model.meshes[0].surface);
+  const AttributeLayer* tangents = model.meshes[0].surface.find(Semantic::tangent);
+  ASSERT_NE(tangents, nullptr);
+  // u runs along x, v along y, so that the bitangent runs against y: cross(z, x) · -1.
+  EXPECT_NEAR(static_cast<double>(tangents->values[0]), 1, 1e-6);
+  EXPECT_EQ(tangents->values[3], -1);
+  const Image8 map = decode_image(model.images[1].bytes);
+  for (int y = 2; y < 62; y += 5) {
+    for (int x = 8; x < 56; x += 3) {
+      const Vec3d n = normal_at(((x + 0.5) / 64 - 0.1) / 0.8, (y + 0.5) / 64);
+      // A step of the file is 1 / 127.5; the square's triangles bend its normals by a little.
+      EXPECT_NEAR(map.at(x, y)[0] / 127.5 - 1, n.x, 0.015) << x << ' ' << y;
+      EXPECT_NEAR(map.at(x, y)[1] / 127.5 - 1, -n.y, 0.015) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(Rebake, NormalsTakeTheOldMapAlong) {
+  // A map that leans along u everywhere, on a flat original: the normals of the result lean as well.
+  Squares s = squares(2);
+  Image8 leaning(32, 32, 3, ColorEncoding::linear);
+  for (std::size_t i = 0; i < leaning.pixels.size(); i += 3)
+    leaning.pixels[i] = 204, leaning.pixels[i + 1] = 128, leaning.pixels[i + 2] = 230;
+  for (Model* model : {&s.original, &s.simplified}) model->images[1].bytes = encode_png(leaning);
+  Atlas before = find_atlases(s.original).at(0), after = find_atlases(s.simplified).at(0);
+  AtlasRebake rebake(s.original, before, s.simplified, after);
+  const Image8 map = rebake.baked_normals(&leaning, 1, 32, 32, Context());
+  for (int y = 1; y < 31; y += 3) {
+    for (int x = 5; x < 27; x += 2) {
+      const Vec3d n = normal_at(((x + 0.5) / 32 - 0.1) / 0.8, (y + 0.5) / 32);
+      const Vec3d t = normalized(Vec3d{1, 0, 0} - n * n.x), b = -cross(n, t);
+      const Vec3d wanted = normalized(t * (204 / 127.5 - 1) + b * (128 / 127.5 - 1) + n * (230 / 127.5 - 1));
+      EXPECT_NEAR(map.at(x, y)[0] / 127.5 - 1, wanted.x, 0.02);
+      EXPECT_NEAR(map.at(x, y)[1] / 127.5 - 1, -wanted.y, 0.02);
+    }
+  }
+  // A material that doubles the map stores half.
+  const Image8 half = rebake.baked_normals(nullptr, 2, 32, 32, Context());
+  const Image8 full = rebake.baked_normals(nullptr, 1, 32, 32, Context());
+  const double slope = (full.at(16, 3)[1] - 127.5) / (full.at(16, 3)[2] - 127.5);
+  EXPECT_NEAR((half.at(16, 3)[1] - 127.5) / (half.at(16, 3)[2] - 127.5), slope / 2, 0.02);
+}
+
+TEST(Rebake, MovesAndBakesAtOnce) {
+  const Squares s = squares(1);
+  ShrinkOptions options = rebake_of(s.original);
+  options.moves = TexelMoves::balanced;
+  options.scale = 0.5;
+  const Shrunk one = shrink(s.simplified, options), three = shrink(s.simplified, options, 3);
+  EXPECT_EQ(one.images[0].after.width, 32);
+  EXPECT_GT(one.atlases.at(0).rebaked_texels, 0.5);
+  EXPECT_EQ(one.model.images[0].bytes, three.model.images[0].bytes);
+  options.rebake.normals = true;
+  EXPECT_EQ(shrink(s.simplified, options).model.images[1].bytes,
+            shrink(s.simplified, options, 3).model.images[1].bytes);
+}
+
+TEST(Rebake, AnyMeshComesThrough) {
+  for (const auto& [name, mesh] : test::all_families()) {
+    const Model model = test::textured(mesh, 1);
+    ShrinkOptions options = rebake_of(model, true);
+    options.scale = 0.5;
+    const Shrunk found = shrink(model, options);
+    for (const Mesh& m : found.model.meshes) EXPECT_NO_THROW(check(m.surface)) << name;
+    EXPECT_GE(found.images.size(), 1u) << name;
+  }
+}
+
+TEST(Rebake, TiledImagesStayAndItIsSaid) {
+  Model model = test::textured(test::grid(2, 2), 1);
+  for (float& x : model.meshes[0].surface.find(Semantic::uv)->values) x *= 3;
+  const Shrunk found = shrink(model, rebake_of(model));
+  EXPECT_EQ(found.model.images, model.images);
+  EXPECT_THAT(found.atlases.at(0).not_rebaked_because, testing::HasSubstr("tiled"));
+}
+
+TEST(Rebake, CoordinatesThatWentAstrayComeBack) {
+  const Model original = test::textured(test::grid(4, 4), 1);
+  Model simplified = test::textured(test::grid(1, 1), 1);
+  simplified.meshes[0].surface.find(Semantic::uv)->values[0] = -0.05f;
+  const Shrunk found = shrink(simplified, rebake_of(original));
+  EXPECT_EQ(found.atlases.at(0).not_rebaked_because, "");
+  EXPECT_EQ(found.model.meshes[0].surface.find(Semantic::uv)->values[0], 0);
+}
+
+TEST(Rebake, AnotherModelIsRefused) {
+  const Squares s = squares(1);
+  const Model other = test::textured(test::two_part_grid(2, 1), 1);
+  test::expect_error([&] { shrink(s.simplified, rebake_of(other)); }, ErrorKind::usage, "");
+}
+
+TEST(Rebake, CanBeCancelled) {
+  const Squares s = squares(1);
+  Context context;
+  context.cancel();
+  test::expect_error([&] { shrink_textures(s.simplified, rebake_of(s.original), {}, context); },
+                     ErrorKind::cancelled, "");
+}
+
+}  // namespace
+}  // namespace fovea
