@@ -173,6 +173,12 @@ std::vector<Subject> textured_subjects() {
                    "textured/ToyCar.glb"});
 }
 
+std::vector<Subject> texture_subjects() {
+  std::vector<Subject> all = textured_subjects();
+  if (data_folder()) all.push_back(sample_subject("vase"));
+  return all;
+}
+
 Subject noise_sphere(std::size_t triangles) {
   return {"noise sphere", [triangles] { return make_noise_sphere(triangles); }};
 }

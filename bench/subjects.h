@@ -35,6 +35,9 @@ std::vector<Subject> render_subjects();
 /// Textured models of many kinds of the data folder, or Fovea's own samples.
 std::vector<Subject> textured_subjects();
 
+/// Those of `textured_subjects` and the sample vase.
+std::vector<Subject> texture_subjects();
+
 /// A closed, bumpy sphere of about `triangles` triangles (position only) for runs of any size.
 Subject noise_sphere(std::size_t triangles);
 

@@ -1,8 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "field_source.h"
+#include "fovea/io/image_file.h"
 #include "fovea/io/write.h"
+#include "fovea/saliency/model_saliency.h"
+#include "fovea/simplify/salient.h"
 #include "fovea/texture/shrink.h"
 #include "input.h"
 #include "report.h"
@@ -31,6 +37,9 @@ std::string name_of(const Model& model, std::size_t image) {
   return name.empty() ? fmt::format("image {}", image) : printable(name);
 }
 
+/// Where saliency comes from; presets in the order of SaliencyPreset.
+enum class SaliencySource { none, fovea, yang, lee, munaretti };
+
 class TextureVerb : public Verb {
  public:
   VerbText text() const override {
@@ -54,10 +63,25 @@ class TextureVerb : public Verb {
     arguments.add(model_argument(input_));
     arguments.add("Textures", describe(options_));
     arguments.add("Warp", describe(options_.warp));
+    arguments.add(
+        "Warp",
+        {{"saliency",
+          "Give texels to where people look, by a preset of \"fovea saliency\"; yang by default with --warp "
+          "saliency.",
+          choice(saliency_, {"none", "fovea", "yang", "lee", "munaretti"}), ""},
+         describe_field("importance", "How much each vertex is looked at (0 is not at all)", importance_),
+         {"maps",
+          "Also write what steered the warp as grey pictures: MAPS-saliency.png, -distortion, -coverage, "
+          "-detail and -importance, with the number of an image if there are several atlases.",
+          &maps_, "MAPS.png"}});
     arguments.add("Output", {describe_output(output_)});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
     need_format(arguments, write_options_);
+    arguments.need({{"warp-cells", "warp-rigidity", "warp-floor", "warp-rounds", "warp-tolerance", "saliency",
+                     "importance", "maps"},
+                    "a --warp other than none",
+                    [&] { return options_.moves != TexelMoves::none; }});
   }
 
   int run(Session& session) override {
@@ -66,15 +90,82 @@ class TextureVerb : public Verb {
     const Snapshot before = snapshot(input.model, input.bytes);
     session.report["inputs"] = inputs_json({&input, 1});
     session.report["before"] = to_json(before);
+    const std::vector<VertexField> field =
+        session.phase("saliency", input_, [&] { return looked_at(input, session); });
     const Shrunk result = session.phase(
-        "textures", input_, [&] { return shrink_textures(input.model, options_, {}, session.context); });
+        "textures", input_, [&] { return shrink_textures(input.model, options_, field, session.context); });
+    const std::vector<MapFile> maps = maps_.empty() ? std::vector<MapFile>{} : map_files(result.atlases);
+    for (const MapFile& map : maps) check_image_output(map.path, write_options_.force);
     const auto files = session.phase(
         "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
+    for (const MapFile& map : maps) write_image(map.picture, map.path, write_options_.force);
     tell(session, before, snapshot(result.model, measure_output(files, result.model)), result);
     return 0;
   }
 
  private:
+  struct MapFile {
+    std::string path;
+    Image8 picture;
+  };
+
+  /// 255 stands for the greatest.
+  static Image8 grey(const ImageF& map) {
+    Image8 result(map.width, map.height, 1, ColorEncoding::linear);
+    float greatest = 0;
+    for (const float x : map.pixels) greatest = std::max(greatest, x);
+    for (std::size_t i = 0; greatest > 0 && i < map.pixels.size(); ++i)
+      result.pixels[i] = static_cast<std::uint8_t>(std::lround(255 * map.pixels[i] / greatest));
+    return result;
+  }
+
+  std::vector<MapFile> map_files(const std::vector<AtlasChange>& atlases) const {
+    const std::filesystem::path path(maps_);
+    std::vector<MapFile> files;
+    for (const AtlasChange& atlas : atlases) {
+      if (atlas.importance.pixels.empty()) continue;
+      const std::string number = atlases.size() > 1 ? fmt::format("-image{}", atlas.images.front()) : "";
+      const auto add = [&](const char* name, const ImageF& map) {
+        const std::string file = path.stem().string() + "-" + name + number + path.extension().string();
+        files.push_back({(path.parent_path() / file).string(), grey(map)});
+      };
+      add("saliency", atlas.maps.saliency);
+      add("distortion", atlas.maps.distortion);
+      add("coverage", atlas.maps.coverage);
+      add("detail", atlas.maps.detail);
+      add("importance", atlas.importance);
+    }
+    if (files.empty())
+      throw Error(ErrorKind::unsupported, "there is no map: no texels could have moved", maps_,
+                  "the lines about texels without --maps say why");
+    return files;
+  }
+
+  /// How much each vertex is looked at, 0 … 1; nothing for alike.
+  std::vector<VertexField> looked_at(const Input& input, Session& session) const {
+    std::vector<VertexField> field;
+    if (!importance_.empty()) {
+      NamedFields found = load_fields(importance_, input, read_options_);
+      about(found.path, [&] { check(found.fields); });
+      field = std::move(found.fields);
+    }
+    SaliencySource source = saliency_;
+    if (source == SaliencySource::none && options_.moves == TexelMoves::saliency)
+      source = SaliencySource::yang;
+    if (source != SaliencySource::none) {
+      SaliencyOptions options;
+      options.preset =
+          static_cast<SaliencyPreset>(static_cast<int>(source) - static_cast<int>(SaliencySource::fovea));
+      field = product(field, model_saliency(input.model, options, session.context).saliency);
+    }
+    float greatest = 0;
+    for (const VertexField& mesh : field)
+      for (const float x : mesh.values()) greatest = std::isfinite(x) ? std::max(greatest, x) : greatest;
+    for (VertexField& mesh : field)
+      for (float& x : mesh.values()) x = greatest > 0 ? std::min(x / greatest, 1.0f) : 1.0f;
+    return field;
+  }
+
   void check_request() const {
     if (options_.scale == 1 && options_.max_side == 0 && options_.output.format == TextureOutput::keep) {
       throw Error(ErrorKind::usage, "nothing is asked for", {},
@@ -83,6 +174,7 @@ class TextureVerb : public Verb {
     check_input(input_);
     check_output(output_, "small.glb", {input_}, write_options_.force,
                  [&](const auto& path) { fovea::check_output(path, write_options_); });
+    if (!maps_.empty()) check_image_output(maps_, true);
   }
 
   void tell(Session& session, const Snapshot& before, const Snapshot& after, const Shrunk& result) const {
@@ -116,7 +208,7 @@ class TextureVerb : public Verb {
       const bool measured = atlas.plain_loss > 0;
       list.push_back({{"images", atlas.images},
                       {"fixed_because", atlas.fixed_because},
-                      {"strength", atlas.strength},
+                      {"floor", atlas.floor},
                       {"rounds", atlas.rounds},
                       {"last_move_cells", atlas.last_move},
                       {"settled", atlas.settled},
@@ -138,6 +230,9 @@ class TextureVerb : public Verb {
 
   std::string input_;
   std::string output_;
+  std::string importance_;
+  std::string maps_;
+  SaliencySource saliency_ = SaliencySource::none;
   ShrinkOptions options_;
   ReadOptions read_options_;
   WriteOptions write_options_;

@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <filesystem>
+
 #include "fovea/io/image_codec.h"
 #include "fovea/io/read.h"
 #include "run_command.h"
@@ -47,6 +50,65 @@ TEST_F(TextureVerb, WebpNeedsItsExtension) {
             0);
   EXPECT_THAT(read_text(out("webp.gltf")), HasSubstr("EXT_texture_webp"));
   EXPECT_EQ(model(out("webp.gltf")).images[0].mime_type, "image/webp");
+}
+
+TEST_F(TextureVerb, TexelsMoveAndWhatSteersThemCanBeSeen) {
+  const Outcome outcome =
+      texture({vase_, "-o", out("small.glb"), "--texture-scale", "0.25", "--maps", out("map.png"), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json atlas = outcome.json()["atlases"].at(0);
+  EXPECT_EQ(atlas["fixed_because"], "");
+  EXPECT_LT(atlas["loss"].get<double>(), atlas["plain_loss"].get<double>());
+  EXPECT_NE(model(out("small.glb")).meshes[0].surface.find(Semantic::uv)->values,
+            model(vase_).meshes[0].surface.find(Semantic::uv)->values);
+  for (const char* map : {"saliency", "distortion", "coverage", "detail", "importance"})
+    EXPECT_TRUE(std::filesystem::exists(out(std::string("map-") + map + ".png"))) << map;
+  // They are files like others.
+  EXPECT_EQ(
+      texture({vase_, "-o", out("other.glb"), "--texture-scale", "0.25", "--maps", out("map.png")}).code, 2);
+  EXPECT_FALSE(std::filesystem::exists(out("other.glb")));
+}
+
+TEST_F(TextureVerb, ThePublishedWaysCanBeAskedFor) {
+  for (const char* way : {"saliency", "frequency"}) {
+    const Outcome outcome = texture(
+        {vase_, "-o", out("small.glb"), "--texture-scale", "0.25", "--warp", way, "--force", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.json()["atlases"].at(0)["fixed_because"], "") << way;
+  }
+  const Outcome outcome = texture({vase_, "-o", out("small.glb"), "--texture-scale", "0.25", "--warp", "none",
+                                   "--warp-cells", "64", "--force"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--warp"));
+}
+
+TEST_F(TextureVerb, OddImagesAreHandledOrKeptWithAWord) {
+  ASSERT_EQ(fovea({"sample", "vase", "-o", out("odd.gltf"), "--detail", "0.05"}).code, 0);
+  const std::string image = out("odd_image0.png");
+  const auto shrink = [&] {
+    return texture(
+        {out("odd.gltf"), "-o", out("odd-small.glb"), "--texture-scale", "0.25", "--force", "--json"});
+  };
+  const auto write = [&](int width, int height, int channels) {
+    Image8 picture(width, height, channels, ColorEncoding::srgb);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+      picture.pixels[i] = static_cast<std::uint8_t>(i * i / 7);
+    const std::vector<std::uint8_t> bytes = encode_png(picture);
+    folder_.write("odd_image0.png", {bytes.begin(), bytes.end()});
+  };
+  for (const auto& [width, height, channels] :
+       {std::array{1, 1, 3}, {1, 9, 1}, {301, 17, 3}, {64, 48, 1}, {33, 70, 2}, {50, 50, 4}}) {
+    write(width, height, channels);
+    const Outcome outcome = shrink();
+    ASSERT_EQ(outcome.code, 0) << width << " x " << height << ": " << outcome.err;
+    EXPECT_LE(outcome.json()["images"][0]["after"]["bytes"], outcome.json()["images"][0]["before"]["bytes"]);
+    EXPECT_EQ(image_info(model(out("odd-small.glb")).images[0].bytes).width,
+              outcome.json()["images"][0]["after"]["width"]);
+  }
+  folder_.write("odd_image0.png", read_text(image).substr(0, 100));
+  const Outcome damaged = shrink();
+  EXPECT_EQ(damaged.code, 0) << damaged.err;
+  EXPECT_THAT(damaged.json()["images"][0]["kept_because"].get<std::string>(), HasSubstr("damaged"));
 }
 
 TEST_F(TextureVerb, NothingAskedIsAnError) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "fovea/io/image_codec.h"
@@ -115,16 +116,22 @@ TEST(AtlasFaces, ShareValuesAsTheLayerDoes) {
   EXPECT_EQ(values.size(), 24u);  // six charts of four
 }
 
+Model moved(const Model& model, const Atlas& atlas, const std::function<Vec2d(Vec2d)>& f) {
+  const std::vector<AtlasFace> from = atlas_faces(model, atlas);
+  std::vector<AtlasFace> to = from;
+  for (AtlasFace& face : to)
+    for (Vec2d& uv : face.uv) uv = f(uv);
+  return with_moved_coordinates(model, atlas, from, to);
+}
+
 TEST(WithMovedCoordinates, MovesAllCornersAndKeepsRepeats) {
   Model model = test::textured(test::grid(2, 2), 1);
   shift(model.meshes[0].surface, 1, 0);
   const Atlas atlas = find_atlases(model)[0];
-  const Model moved = with_moved_coordinates(model, atlas, [](Vec2d uv) {
-    return Vec2d{uv.x * uv.x, uv.y / 2};
-  });
-  check(moved.meshes[0].surface);
+  const Model after_all = moved(model, atlas, [](Vec2d uv) { return Vec2d{uv.x * uv.x, uv.y / 2}; });
+  check(after_all.meshes[0].surface);
   const AttributeLayer &before = *model.meshes[0].surface.find(Semantic::uv),
-                       &after = *moved.meshes[0].surface.find(Semantic::uv);
+                       &after = *after_all.meshes[0].surface.find(Semantic::uv);
   ASSERT_EQ(before.values.size(), after.values.size());
   for (std::size_t i = 0; i < before.values.size(); i += 2) {
     EXPECT_FLOAT_EQ(after.values[i], 1 + (before.values[i] - 1) * (before.values[i] - 1));
@@ -137,8 +144,8 @@ TEST(WithMovedCoordinates, LeavesWhatOtherPartsUse) {
   const Model model = test::textured(test::two_part_grid(2, 1), 1);
   const Atlas atlas = find_atlases(model)[0];
   ASSERT_THAT(atlas.parts, ElementsAre(AtlasPart{0, 0, 0}));
-  const Model moved = with_moved_coordinates(model, atlas, [](Vec2d) { return Vec2d{0.25, 0.75}; });
-  const TriMesh& mesh = moved.meshes[0].surface;
+  const Model after = moved(model, atlas, [](Vec2d) { return Vec2d{0.25, 0.75}; });
+  const TriMesh& mesh = after.meshes[0].surface;
   check(mesh);
   const AttributeLayer &layer = *mesh.find(Semantic::uv),
                        &before = *model.meshes[0].surface.find(Semantic::uv);

@@ -124,14 +124,17 @@ TEST(Baked, ThreadsDoNotMatter) {
             bake(image, Kind::color, model, from, to, 200, 100, 4).pixels);
 }
 
-TEST(FillBetween, LeavesWhatTrianglesCover) {
+TEST(FillBetween, LeavesWhatTrianglesCoverAndWhatIsMixedIntoIt) {
   const Model model = test::textured(test::grid(1, 1), 1);
   const std::vector<AtlasFace> half = moved(faces_of(model), [](Vec2d uv) { return Vec2d{uv.x / 2, uv.y}; });
   Image8 image = test::pattern(32, 32);
-  for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 16; ++x) std::fill_n(image.at(x, y), 3, std::uint8_t{50});
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 17; ++x) std::fill_n(image.at(x, y), 3, static_cast<std::uint8_t>(x < 16 ? 50 : 90));
+  }
   fill_between(image, half, Context());
-  for (const std::uint8_t x : image.pixels) EXPECT_EQ(x, 50);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) EXPECT_EQ(*image.at(x, y), x < 16 ? 50 : 90) << x << ' ' << y;
+  }
 }
 
 TEST(TexelLosses, AreSquaredDifferencesWhereTheyAre) {

@@ -90,6 +90,7 @@ TEST(Warp, RelaxationAloneSpreadsImportanceEvenly) {
   options.rounds = 3000;
   options.tolerance = 1e-5;
   options.cells = 32;
+  options.floor = 0.2;
   const auto sigma = [](double u) { return std::exp(1.2 * u); };
   const Warp found = warped(importance(256, 256, [&](double u, double) { return sigma(u); }), options);
   EXPECT_TRUE(found.settled);

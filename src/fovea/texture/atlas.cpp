@@ -190,7 +190,8 @@ std::vector<AtlasFace> atlas_faces(const Model& model, const Atlas& atlas) {
   std::vector<AtlasFace> faces;
   std::map<std::pair<std::uint32_t, int>, Layer> layers;
   std::uint32_t value_count = 0;
-  for (const AtlasPart& part : atlas.parts) {
+  for (std::uint32_t p = 0; p < atlas.parts.size(); ++p) {
+    const AtlasPart& part = atlas.parts[p];
     const TriMesh& mesh = model.meshes[part.mesh].surface;
     const AttributeLayer* uvs = mesh.find(Semantic::uv, part.uv_set);
     if (uvs == nullptr) continue;
@@ -207,7 +208,7 @@ std::vector<AtlasFace> atlas_faces(const Model& model, const Atlas& atlas) {
       if (!uv) continue;
       const ValueId* id = &uvs->corner_value[std::size_t{3} * f];
       const Vec2d repeat = layer.charts.repeat(id[0].index());
-      AtlasFace& face = faces.emplace_back(AtlasFace{part.mesh, f, {}});
+      AtlasFace& face = faces.emplace_back(AtlasFace{p, part.mesh, f, {}});
       for (std::size_t k = 0; k < 3; ++k) {
         face.uv[k] = (*uv)[k] - repeat;
         face.value[k] = layer.first_value + id[k].value;
@@ -217,38 +218,55 @@ std::vector<AtlasFace> atlas_faces(const Model& model, const Atlas& atlas) {
   return faces;
 }
 
-Model with_moved_coordinates(const Model& model, const Atlas& atlas,
-                             const std::function<Vec2d(Vec2d)>& target) {
+Model with_moved_coordinates(const Model& model, const Atlas& atlas, std::span<const AtlasFace> from,
+                             std::span<const AtlasFace> to) {
+  struct Layer {
+    TriMesh* mesh;
+    AttributeLayer* uvs;
+    std::vector<bool> is_moved;  // [#corners]
+    std::vector<bool> stays;     // values: other corners have them too
+    std::vector<ValueId> moved;  // by old value
+  };
   Model result = model;
-  std::map<std::pair<std::uint32_t, int>, Charts> charts;
-  // Parts of one layer are moved together, so that what only they share stays shared.
-  std::map<std::pair<std::uint32_t, int>, std::set<std::uint32_t>> parts_of;
-  for (const AtlasPart& part : atlas.parts) parts_of[{part.mesh, part.uv_set}].insert(part.part);
-  for (const auto& [key, parts] : parts_of) {
-    TriMesh& mesh = result.meshes[key.first].surface;
-    AttributeLayer* layer = mesh.find(Semantic::uv, key.second);
-    if (layer == nullptr) continue;
-    Charts chart(model.meshes[key.first].surface,
-                 *model.meshes[key.first].surface.find(Semantic::uv, key.second));
-    const auto is_moved = [&](std::size_t corner) { return parts.contains(mesh.face_part[corner / 3]); };
-    std::vector<bool> stays(layer->size(), false);
-    for (std::size_t c = 0; c < layer->corner_value.size(); ++c) {
-      if (const ValueId id = layer->corner_value[c]; id.valid() && !is_moved(c)) stays[id.index()] = true;
+  std::map<std::pair<std::uint32_t, int>, Layer> layers;
+  const auto layer_of = [&](const AtlasFace& face) -> Layer& {
+    const int set = atlas.parts[face.part].uv_set;
+    const auto [at, is_new] = layers.try_emplace({face.mesh, set});
+    if (is_new) {
+      TriMesh& mesh = result.meshes[face.mesh].surface;
+      at->second = {&mesh, mesh.find(Semantic::uv, set), {}, {}, {}};
+      at->second.is_moved.resize(at->second.uvs->corner_value.size(), false);
     }
-    std::vector<ValueId> moved(stays.size());
-    for (std::size_t c = 0; c < layer->corner_value.size(); ++c) {
-      const ValueId id = layer->corner_value[c];
-      if (!id.valid() || !is_moved(c)) continue;
-      ValueId& to = moved[id.index()];
-      if (!to.valid()) {
-        to = stays[id.index()] ? ValueId(static_cast<std::uint32_t>(layer->size())) : id;
-        if (to != id) layer->values.resize(layer->values.size() + static_cast<std::size_t>(layer->width));
-        const Vec2d repeat = chart.repeat(id.index());
-        const Vec2d uv = target(chart.value(id.index()) - repeat) + repeat;
-        layer->value(to)[0] = static_cast<float>(uv.x);
-        layer->value(to)[1] = static_cast<float>(uv.y);
+    return at->second;
+  };
+  for (const AtlasFace& face : from) {
+    std::vector<bool>& is_moved = layer_of(face).is_moved;
+    for (std::size_t k = 0; k < 3; ++k) is_moved[std::size_t{3} * face.face + k] = true;
+  }
+  for (auto& [key, layer] : layers) {
+    layer.stays.resize(layer.uvs->size(), false);
+    layer.moved.resize(layer.uvs->size());
+    for (std::size_t c = 0; c < layer.is_moved.size(); ++c) {
+      if (const ValueId id = layer.uvs->corner_value[c]; id.valid() && !layer.is_moved[c])
+        layer.stays[id.index()] = true;
+    }
+  }
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    Layer& layer = layer_of(from[i]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      ValueId& id = layer.uvs->corner_value[std::size_t{3} * from[i].face + k];
+      ValueId& to_id = layer.moved[id.index()];
+      if (!to_id.valid()) {
+        to_id = layer.stays[id.index()] ? ValueId(layer.uvs->size()) : id;
+        const float* const old = layer.uvs->value(id);
+        const Vec2d uv =
+            Vec2d{static_cast<double>(old[0]), static_cast<double>(old[1])} + to[i].uv[k] - from[i].uv[k];
+        if (to_id != id)
+          layer.uvs->values.resize(layer.uvs->values.size() + static_cast<std::size_t>(layer.uvs->width));
+        layer.uvs->value(to_id)[0] = static_cast<float>(uv.x);
+        layer.uvs->value(to_id)[1] = static_cast<float>(uv.y);
       }
-      layer->corner_value[c] = to;
+      id = to_id;
     }
   }
   return result;

@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +36,7 @@ std::vector<Atlas> find_atlases(const Model& model);
 /// A triangle in the images of an atlas: 0 … 1, v down. Coordinates beyond are brought back by whole repeats
 /// of the image, chart by chart (connected by shared values), if the whole chart lies in one repeat.
 struct AtlasFace {
+  std::uint32_t part = 0;  ///< Index into Atlas::parts.
   std::uint32_t mesh = 0, face = 0;
   std::array<Vec2d, 3> uv;
   /// Of its corners: the same for corners that share a value, from 0 on over the whole atlas.
@@ -47,9 +48,10 @@ struct AtlasFace {
 /// triangles in the same parts. O(#F).
 std::vector<AtlasFace> atlas_faces(const Model& model, const Atlas& atlas);
 
-/// The model with the coordinates of an atlas's triangles moved: each from where it is, 0 … 1, to
-/// `target(uv)`; a chart stays in its repeat. Values that other triangles use too become two. O(#F).
-Model with_moved_coordinates(const Model& model, const Atlas& atlas,
-                             const std::function<Vec2d(Vec2d)>& target);
+/// The model with the coordinates of an atlas's triangles moved, from `from`, as `atlas_faces` has them, to
+/// `to`, which has the same for corners that share a value; a chart stays in its repeat. Values that other
+/// triangles use too become two. O(#F).
+Model with_moved_coordinates(const Model& model, const Atlas& atlas, std::span<const AtlasFace> from,
+                             std::span<const AtlasFace> to);
 
 }  // namespace fovea

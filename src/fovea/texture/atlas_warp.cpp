@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -17,41 +16,81 @@ namespace {
 
 /// Longest side of the maps that losses are measured on, and of those that steer the warp, in texels.
 constexpr int kMapSide = 512, kSteeringSide = 128;
+/// Warps that are tried, each less ambitious than the one before.
+constexpr int kAttempts = 5;
+/// Of what plain resizing loses: with so little, no other warp is looked for.
+constexpr double kGoodLoss = 0.9;
 /// An image is baked at so many times its new size, at least and at most, and then resized.
 constexpr int kLeastOversampling = 2, kMostOversampling = 8;
+/// And of that size at most, in texels along the longer side, if it is more than the least.
+constexpr int kLongestBaked = 4096;
 /// Mean squared difference below which nothing is lost: that of half a step of a byte.
 constexpr double kLeastLoss = 0.25 / (255.0 * 255.0);
-/// Of a triangle's area in the texture: what it has to keep.
+/// Of a triangle's area in the texture: what it has to keep, but for what others need.
 constexpr double kLeastArea = 0.02;
-/// In texels: the height of triangles that may turn over.
-constexpr double kThin = 0.05;
+/// What those that turn over get, and how often all are looked at for such.
+constexpr double kRestored = 0.25;
+constexpr int kMostPasses = 100;
 /// Part of the texels that may show two places at once; rasterisation alone makes some.
-constexpr double kMostConflicts = 1e-3;
+constexpr double kMostConflicts = 5e-3;
 
-/// The grid, but only part of the way.
-WarpGrid partial(const WarpGrid& grid, double strength) {
-  WarpGrid result(grid.columns(), grid.rows());
-  for (int j = 0; j <= grid.rows(); ++j) {
-    for (int i = 0; i <= grid.columns(); ++i)
-      result.set_node(i, j, result.node(i, j) * (1 - strength) + grid.node(i, j) * strength);
-  }
-  return result;
+/// So that it is baked at the size that it had, within reason.
+int oversampling(const WarpedImage& image) {
+  const int longest = std::max(image.width, image.height);
+  const int wanted = (image.image->width + image.width - 1) / image.width;
+  return std::clamp(std::min(wanted, kLongestBaked / longest), kLeastOversampling, kMostOversampling);
 }
 
-/// Whether triangles turn over or all but vanish, other than such as are thinner than anything an image of
-/// `side` texels shows.
-bool is_turned_over(std::span<const AtlasFace> from, std::span<const AtlasFace> to, int side) {
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const auto area = [](const AtlasFace& f) { return cross(f.uv[1] - f.uv[0], f.uv[2] - f.uv[0]); };
-    const double before = area(from[i]), after = area(to[i]);
-    double longest = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec2d edge = from[i].uv[(k + 1) % 3] - from[i].uv[k];
-      longest = std::max(longest, std::hypot(edge.x, edge.y));
+/// Twice the area, with a sign.
+double area(const AtlasFace& face, const std::vector<Vec2d>& at) {
+  return cross(at[face.value[1]] - at[face.value[0]], at[face.value[2]] - at[face.value[0]]);
+}
+double area(const AtlasFace& face) { return cross(face.uv[1] - face.uv[0], face.uv[2] - face.uv[0]); }
+
+double length_of(Vec2d a) { return std::hypot(a.x, a.y); }
+
+/// The corner across from the longest side.
+std::size_t apex(const AtlasFace& face) {
+  std::size_t best = 0;
+  double longest = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double side = length_of(face.uv[(k + 2) % 3] - face.uv[(k + 1) % 3]);
+    if (side > longest) longest = side, best = k;
+  }
+  return best;
+}
+
+/// Values where a warp takes them. Between its corners a triangle stays straight, so thin ones can turn over
+/// though the warp does not fold: their corners are moved apart until they are as high again, in their
+/// proportion. Whether that came to an end.
+bool unturn(std::span<const AtlasFace> from, std::vector<Vec2d>& at) {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    bool done = true;
+    for (const AtlasFace& face : from) {
+      const double before = area(face), after = area(face, at);
+      if (before == 0 || after / before >= kLeastArea) continue;
+      done = false;
+      const std::size_t k = apex(face), i = (k + 1) % 3, j = (k + 2) % 3;
+      const Vec2d side = at[face.value[j]] - at[face.value[i]];
+      const double length = length_of(side), old_length = length_of(face.uv[j] - face.uv[i]);
+      if (!(length > 0)) return false;
+      const double wanted = before * (length / old_length) * (length / old_length) * kRestored;
+      const Vec2d up = Vec2d{-side.y, side.x} * (1 / length);
+      const Vec2d move = up * ((wanted - after) / length / 2);
+      at[face.value[k]] = at[face.value[k]] + move;
+      at[face.value[i]] = at[face.value[i]] - move;
+      at[face.value[j]] = at[face.value[j]] - move;
     }
-    if (std::abs(before) * side > kThin * longest && after / before < kLeastArea) return true;
+    if (done) return true;
   }
   return false;
+}
+
+std::size_t value_count(std::span<const AtlasFace> faces) {
+  std::size_t count = 0;
+  for (const AtlasFace& face : faces)
+    for (const std::uint32_t value : face.value) count = std::max<std::size_t>(count, value + std::size_t{1});
+  return count;
 }
 
 /// Part of the drawn texels that show more than one place of the old image, a texel or more apart.
@@ -136,32 +175,34 @@ class Warper {
   }
 
   /// After `unmoved`.
-  Warp find_warp(WarpAim aim, const WarpOptions& options) {
+  ImageF importance(WarpAim aim) const {
     const int factor = std::max(1, std::max(maps_.coverage.width, maps_.coverage.height) / kSteeringSide);
     const auto small = [&](const ImageF& map) { return reduced(map, places_.drawn, factor); };
     const TextureImportance maps{small(maps_.saliency), small(maps_.distortion), small(maps_.coverage),
                                  small(maps_.detail)};
-    WarpOptions asked = options;
-    if (aim == WarpAim::frequency) asked.rigidity = 0;
-    return warp(importance_of(maps, aim), asked, context_);
+    return importance_of(maps, aim);
   }
+  const TextureImportance& maps() const { return maps_; }
 
   /// None if it folds something over.
-  std::optional<AtlasWarp> moved(const Warp& warp, double strength) {
+  std::optional<AtlasWarp> moved(Warp warp) {
     AtlasWarp result;
-    result.strength = strength;
-    const WarpGrid grid = partial(warp.grid, strength);
-    if (!(grid.smallest_corner() > 0)) return std::nullopt;
-    const InverseWarp inverse(grid);
-    result.model = with_moved_coordinates(model_, atlas_, [&](Vec2d uv) { return inverse.target(uv); });
-    result.to = atlas_faces(result.model, atlas_);
-    if (is_turned_over(from_, result.to, longest_side())) return std::nullopt;
+    result.is_moved = true;
+    result.warp = std::move(warp);
+    const InverseWarp inverse(result.warp.grid);
+    result.to = from_;
+    std::vector<Vec2d> at(value_count(from_));
+    for (const AtlasFace& face : from_)
+      for (std::size_t k = 0; k < 3; ++k) at[face.value[k]] = inverse.target(face.uv[k]);
+    if (!unturn(from_, at)) return std::nullopt;
+    for (AtlasFace& face : result.to)
+      for (std::size_t k = 0; k < 3; ++k) face.uv[k] = at[face.value[k]];
+    result.model = with_moved_coordinates(model_, atlas_, from_, result.to);
     const auto turns = tangent_turns(model_, from_, result.to);
     std::optional<TexelOrigins> origins;
     std::vector<UvSlopes> slopes;
     for (const WarpedImage& image : images_) {
-      const int factor = std::clamp((image.image->width + image.width - 1) / image.width, kLeastOversampling,
-                                    kMostOversampling);
+      const int factor = oversampling(image);
       const int width = factor * image.width, height = factor * image.height;
       if (!origins || origins->width != width || origins->height != height) {
         origins = texel_origins(result.to, from_, turns, width, height, context_);
@@ -178,11 +219,6 @@ class Warper {
   }
 
  private:
-  int longest_side() const {
-    int side = 1;
-    for (const WarpedImage& image : images_) side = std::max({side, image.width, image.height});
-    return side;
-  }
   /// Where the texels of the maps are in the new images.
   TexelOrigins places(std::span<const AtlasFace> to) const {
     return texel_origins(from_, to, {}, maps_.coverage.width, maps_.coverage.height, context_);
@@ -221,17 +257,19 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
   best.model = model;
   const double plain_loss = best.loss;
   if (plain_loss < kLeastLoss) return best;
-  Warp found = warper.find_warp(aim, options);
-  double least = measured ? plain_loss : std::numeric_limits<double>::infinity();
-  for (const double strength : {1.0, 0.5, 0.25}) {
-    std::optional<AtlasWarp> next = warper.moved(found, strength);
-    if (!next || next->loss >= least) continue;
-    least = next->loss;
+  ImageF importance = warper.importance(aim);
+  WarpOptions asked = options;
+  if (aim == WarpAim::frequency) asked.rigidity = 0;
+  for (int attempt = 0; attempt < kAttempts && asked.floor <= 1; ++attempt, asked.floor *= 2) {
+    std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
+    if (!next || (measured && next->loss >= best.loss)) continue;
     best = std::move(*next);
-    if (!measured) break;
+    best.floor = asked.floor;
+    if (!measured || best.loss < kGoodLoss * plain_loss) break;
   }
   best.plain_loss = plain_loss;
-  best.warp = std::move(found);
+  best.maps = warper.maps();
+  best.importance = std::move(importance);
   return best;
 }
 

@@ -10,6 +10,7 @@
 #include "fovea/model/image.h"
 #include "fovea/model/model.h"
 #include "fovea/texture/atlas.h"
+#include "fovea/texture/importance.h"
 #include "fovea/texture/resize.h"
 #include "fovea/texture/warp.h"
 
@@ -34,21 +35,23 @@ struct AtlasWarp {
   Model model;                 ///< With moved coordinates.
   std::vector<AtlasFace> to;   ///< Where triangles are now, in the order of those before.
   std::vector<Image8> images;  ///< Of the wanted sizes.
-  Warp warp;                   ///< All of the way.
-  double strength =
-      0;  ///< How much of the way it goes: 1, or a part that keeps triangles from folding; 0 is not at all.
-  double loss = 0,
-         plain_loss =
-             0;  ///< What pictures lose with it and by plain resizing (texel_loss.h), mean over the surface.
+  TextureImportance maps;      ///< What the warp goes by,
+  ImageF importance;           ///< and what came of them.
+  Warp warp;
+  bool is_moved = false;  ///< Else all is where it was.
+  double floor = 0;       ///< WarpOptions::floor that it came to; 0 if nothing moved.
+  /// What pictures lose with it, and by plain resizing: the mean over the surface (texel_loss.h).
+  double loss = 0, plain_loss = 0;
 };
 
 /// Moves the texels of an atlas that may move (`Atlas::fixed_because`) and bakes its images anew through the
-/// triangles (bake.h), at the wanted sizes. Of all of the way, half of it, and not moving at all it takes
-/// what loses least; ways that turn a triangle over, or that bring texels of two triangles to one place, are
-/// none. Without moving, images are `resized` from the filled ones.
+/// triangles (bake.h), at the wanted sizes. A warp that brings texels of two triangles to one place or turns
+/// one over is not taken; then one with twice the floor is tried, four times at most. If `measured`, so it
+/// goes until a tenth is gained over not moving, and what loses least is taken. If no warp is, images are
+/// `resized` from the filled ones.
 ///
-/// `field` as for `texture_importance`. `measured`: only if it gains; else it goes as far as it can.
-/// Cost: that of the warp and of three bakes. Throws what `warp` throws.
+/// `field` as for `texture_importance`. Cost: that of one bake, or as many as are tried. Throws what `warp`
+/// throws.
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
                      bool measured, Context& context);

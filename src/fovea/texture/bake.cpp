@@ -69,14 +69,16 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
                             }
                           }
                         });
-  fill_undrawn(result, origins.drawn);
+  fill_undrawn(result, origins.drawn, context);
   return result;
 }
 
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
   struct Nothing {};
   const auto nothing = [](std::uint32_t, const std::array<double, 3>&) { return Nothing{}; };
-  fill_undrawn(image, rasterized<Nothing>(faces, image.width, image.height, nothing, context).drawn);
+  auto drawn = rasterized<Nothing>(faces, image.width, image.height, nothing, context).drawn;
+  grow_drawn(drawn, image.width, image.height);
+  fill_undrawn(image, drawn, context);
 }
 
 }  // namespace fovea

@@ -27,7 +27,8 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
              std::span<const UvSlopes> slopes, const Context& context);
 
 /// The image with all that no triangle covers filled from what is around, its colours beyond the triangles'
-/// borders among them. In place. O(#F + #texels), parallel.
+/// borders among them; but for the texels beside those that triangles cover, which are mixed into what shows.
+/// In place. O(#F + #texels), parallel.
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context);
 
 }  // namespace fovea

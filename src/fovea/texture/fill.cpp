@@ -5,9 +5,15 @@
 #include <cassert>
 #include <vector>
 
+#include "fovea/base/parallel.h"
+
 namespace fovea {
 
 namespace {
+
+/// Texels that a drawn area grows by before averages of larger squares take over, which know little of its
+/// border.
+constexpr int kRings = 8;
 
 /// An image and which of its texels are known.
 struct Level {
@@ -21,12 +27,21 @@ struct Level {
 
 constexpr int kMostChannels = 4;
 
+template <class Row>
+void over_rows(int height, const Context& context, const Row& row) {
+  constexpr std::size_t kGrain = 64;
+  parallel_for_or_throw(context, static_cast<std::size_t>(height), kGrain,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t y = begin; y < end; ++y) row(static_cast<int>(y));
+                        });
+}
+
 /// Half the size: averages of what is known of 2 × 2 texels.
-Level pushed(const Image8& image, std::span<const std::uint8_t> known) {
+Level pushed(const Image8& image, std::span<const std::uint8_t> known, const Context& context) {
   const int width = (image.width + 1) / 2, height = (image.height + 1) / 2, channels = image.channels;
   Level half{Image8(width, height, channels, image.encoding), {}};
   half.known.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  for (int y = 0; y < height; ++y) {
+  over_rows(height, context, [&](int y) {
     for (int x = 0; x < width; ++x) {
       std::array<int, kMostChannels> sum{};
       int count = 0;
@@ -47,13 +62,13 @@ Level pushed(const Image8& image, std::span<const std::uint8_t> known) {
             static_cast<std::uint8_t>((sum[static_cast<std::size_t>(k)] + count / 2) / count);
       }
     }
-  }
+  });
   return half;
 }
 
 /// What is not known is mixed from the four nearest texels of half the size, which are all there.
-void pull(Image8& image, std::span<const std::uint8_t> known, const Image8& half) {
-  for (int y = 0; y < image.height; ++y) {
+void pull(Image8& image, std::span<const std::uint8_t> known, const Image8& half, const Context& context) {
+  over_rows(image.height, context, [&](int y) {
     const int row = y / 2, other_row = std::clamp(row + (y % 2 == 0 ? -1 : 1), 0, half.height - 1);
     for (int x = 0; x < image.width; ++x) {
       if (known[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
@@ -66,21 +81,87 @@ void pull(Image8& image, std::span<const std::uint8_t> known, const Image8& half
       for (int k = 0; k < image.channels; ++k)
         out[k] = static_cast<std::uint8_t>((9 * a[k] + 3 * b[k] + 3 * c[k] + d[k] + 8) / 16);
     }
-  }
+  });
 }
 
-void fill(Image8& image, std::span<const std::uint8_t> known) {
+void fill(Image8& image, std::span<const std::uint8_t> known, const Context& context) {
   if (std::ranges::find(known, 0) == known.end() || (image.width == 1 && image.height == 1)) return;
-  Level half = pushed(image, known);
-  fill(half.image, half.known);
-  pull(image, known, half.image);
+  Level half = pushed(image, known, context);
+  fill(half.image, half.known, context);
+  pull(image, known, half.image, context);
+}
+
+/// Calls f(index) for a texel and the eight around it, as many as there are.
+template <class F>
+void for_around(const Image8& image, std::size_t texel, F&& f) {
+  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+  const std::size_t x = texel % width, y = texel / width;
+  for (std::size_t j = y > 0 ? y - 1 : 0; j <= std::min(y + 1, height - 1); ++j)
+    for (std::size_t i = x > 0 ? x - 1 : 0; i <= std::min(x + 1, width - 1); ++i) f(j * width + i);
+}
+
+/// The texels beside those that are known.
+std::vector<std::size_t> border(const Image8& image, std::span<const std::uint8_t> known) {
+  std::vector<std::size_t> found;
+  for (std::size_t t = 0; t < known.size(); ++t) {
+    if (known[t] != 0) continue;
+    bool is_beside = false;
+    for_around(image, t, [&](std::size_t n) { is_beside = is_beside || known[n] != 0; });
+    if (is_beside) found.push_back(t);
+  }
+  return found;
+}
+
+/// Gives each of `texels` the mean of the known ones around it, nearer ones twice; then they are known.
+void give_means(Image8& image, std::span<const std::size_t> texels, std::vector<std::uint8_t>& known) {
+  const auto channels = static_cast<std::size_t>(image.channels),
+             width = static_cast<std::size_t>(image.width);
+  for (const std::size_t t : texels) {
+    std::array<int, kMostChannels> sum{};
+    int count = 0;
+    for_around(image, t, [&](std::size_t n) {
+      if (known[n] == 0) return;
+      const int weight = n % width == t % width || n / width == t / width ? 2 : 1;
+      count += weight;
+      for (std::size_t k = 0; k < channels; ++k) sum[k] += weight * image.pixels[n * channels + k];
+    });
+    for (std::size_t k = 0; k < channels; ++k)
+      image.pixels[t * channels + k] = static_cast<std::uint8_t>((sum[k] + count / 2) / count);
+  }
+  for (const std::size_t t : texels) known[t] = 1;
+}
+
+/// The texels beside `ring` that are not known, rising.
+std::vector<std::size_t> next_ring(const Image8& image, std::span<const std::size_t> ring,
+                                   std::span<const std::uint8_t> known) {
+  std::vector<std::size_t> next;
+  for (const std::size_t t : ring) {
+    for_around(image, t, [&](std::size_t n) {
+      if (known[n] == 0) next.push_back(n);
+    });
+  }
+  std::ranges::sort(next);
+  next.erase(std::unique(next.begin(), next.end()), next.end());
+  return next;
 }
 
 }  // namespace
 
-void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn) {
+void grow_drawn(std::span<std::uint8_t> drawn, int width, int height) {
+  const Image8 shape(width, height, 1, ColorEncoding::linear);
+  for (const std::size_t t : border(shape, drawn)) drawn[t] = 1;
+}
+
+void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn, const Context& context) {
   assert(image.channels <= kMostChannels);
-  if (std::ranges::find_if(drawn, [](std::uint8_t d) { return d != 0; }) != drawn.end()) fill(image, drawn);
+  std::vector<std::uint8_t> known(drawn.begin(), drawn.end());
+  std::vector<std::size_t> ring = border(image, known);
+  if (ring.empty()) return;
+  for (int i = 0; i < kRings && !ring.empty(); ++i) {
+    give_means(image, ring, known);
+    ring = next_ring(image, ring, known);
+  }
+  fill(image, known, context);
 }
 
 }  // namespace fovea

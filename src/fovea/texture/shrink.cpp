@@ -149,16 +149,18 @@ class Shrinker {
       change.rounds = warp.warp.rounds;
       change.last_move = warp.warp.last_move;
       change.settled = warp.warp.settled;
+      change.floor = warp.floor;
       change.loss = warp.loss;
       change.plain_loss = warp.plain_loss;
-      if (warp.strength == 0) return "it would gain nothing";
+      change.maps = std::move(warp.maps);
+      change.importance = std::move(warp.importance);
+      if (!warp.is_moved) return "it would gain nothing";
       std::vector<ImageOutput> outputs;
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         std::optional<ImageOutput> output = encoded(atlas.images[i], warp.images[i]);
         if (!output) return fmt::format("image {} would become larger", atlas.images[i]);
         outputs.push_back(std::move(*output));
       }
-      change.strength = warp.strength;
       result_.model = std::move(warp.model);
       for (std::size_t i = 0; i < outputs.size(); ++i)
         set(atlas.images[i], std::move(outputs[i]), wanted[i].width, wanted[i].height);

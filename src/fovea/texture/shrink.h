@@ -36,11 +36,13 @@ OptionList describe(ShrinkOptions& options);
 struct AtlasChange {
   std::vector<int> images;
   std::string fixed_because;  ///< Why its texels did not move; empty if they did.
-  double strength = 0;        ///< 0 if they did not, else AtlasWarp::strength.
+  double floor = 0;           ///< As AtlasWarp's.
   std::int64_t rounds = 0;    ///< Of the warp,
   double last_move = 0;       ///< and how far a node went in the last, in cells.
   bool settled = false;
-  double loss = 0, plain_loss = 0;  ///< As AtlasWarp's; 0 where nothing was measured.
+  double loss = 0, plain_loss = 0;  ///< As AtlasWarp's; 0 where nothing was measured,
+  TextureImportance maps;           ///< and then empty, as
+  ImageF importance;                ///< this is.
 };
 
 struct Shrunk {

@@ -59,10 +59,10 @@ struct WarpOptions {
   std::int64_t cells = 128;
   /// Share of a round's move that goes to what keeps cells rigid, 0 … 1; 0 is relaxation alone, as Balmelli
   /// et al. ("Space-optimized texture maps", 2002) have it.
-  double rigidity = 0.5;
+  double rigidity = 0.1;
   /// The least importance, as a part of the greatest, 0 … 1: how far cells may be stretched.
-  double floor = 0.2;
-  std::int64_t rounds = 300;  ///< Of each level, at most.
+  double floor = 0.05;
+  std::int64_t rounds = 100;  ///< Of each level, at most.
   double tolerance = 1e-3;    ///< A level is settled when no node moves farther, in cells.
 };
 OptionList describe(WarpOptions& options);
