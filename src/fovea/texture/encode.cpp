@@ -13,7 +13,8 @@ namespace fovea {
 
 namespace {
 
-constexpr int kTile = 64, kTilesAcross = 8;
+constexpr int kTile = 64, kTilesAcross = 8, kSampleTilesAcross = 4;
+constexpr std::array kSampleQualities{25, 55, 78, 90, 97};
 /// Squares whose error is looked at, in texels; nothing is to be seen where values are no further apart than
 /// kEven. Where something is, a file may be worse than asked for by so many dB.
 constexpr int kSquare = 16, kEven = 8;
@@ -117,10 +118,10 @@ EncodedTexture measured(const Image8& image, TextureFormat format, int quality, 
 }
 
 /// Squares of kTile² from all over the image, in which something is to be seen if there are such, side by
-/// side; all of the image if it is not larger.
-Image8 excerpt(const Image8& image) {
-  constexpr int kSide = kTile * kTilesAcross;
-  if (image.width <= kSide && image.height <= kSide) return image;
+/// side, `most_across` in a row; all of the image if it is not larger.
+Image8 excerpt(const Image8& image, int most_across) {
+  const int side = kTile * most_across;
+  if (image.width <= side && image.height <= side) return image;
   const int width = std::min(kTile, image.width), height = std::min(kTile, image.height);
   std::vector<Square> tiles, busy;
   for (int y = 0; y + height <= image.height; y += height) {
@@ -130,8 +131,8 @@ Image8 excerpt(const Image8& image) {
     }
   }
   if (!busy.empty()) tiles = std::move(busy);
-  const std::size_t count = std::min<std::size_t>(tiles.size(), kTilesAcross * kTilesAcross);
-  const auto across = static_cast<int>(std::min<std::size_t>(count, kTilesAcross));
+  const std::size_t count = std::min(tiles.size(), static_cast<std::size_t>(most_across * most_across));
+  const auto across = static_cast<int>(std::min(count, static_cast<std::size_t>(most_across)));
   const int down = static_cast<int>(count) / across;
   Image8 result(across * width, down * height, image.channels, image.encoding);
   for (int i = 0; i < across * down; ++i) {
@@ -191,7 +192,7 @@ EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double 
   if (format == TextureFormat::png) return without_loss();
   if (!std::isfinite(least_psnr_db))
     return format == TextureFormat::webp ? without_loss() : measured(image, format, 100, content);
-  const Image8 part = excerpt(image);
+  const Image8 part = excerpt(image, kTilesAcross);
   int quality = lowest_quality(part, format, least_psnr_db, content);
   EncodedTexture result = measured(image, format, quality, content);
   // The excerpt is not the whole: some steps more may be needed.
@@ -205,6 +206,26 @@ EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double 
   if (encoded(part, format, 0).size() >= encoded(part, format, quality).size()) return result;
   EncodedTexture exact = without_loss();
   return exact.bytes.size() < result.bytes.size() ? exact : result;
+}
+
+std::vector<EncodingSample> encoding_samples(const Image8& image, TextureFormat format, Content content) {
+  const Image8 part = excerpt(image, kSampleTilesAcross);
+  const auto texels = static_cast<double>(part.width) * part.height;
+  std::vector<EncodingSample> samples;
+  const auto add = [&](const std::vector<std::uint8_t>& bytes, bool exact) {
+    EncodingSample& sample = samples.emplace_back();
+    sample.bytes_per_texel = static_cast<double>(bytes.size()) / texels;
+    sample.psnr_db = kNoLoss;
+    if (exact) return;
+    const Image8 decoded = with_channels(decode_image(bytes), part.channels);
+    sample.psnr_db = encoding_psnr(part, decoded, content);
+    sample.mean_squared_error = mean_squared_error(part, decoded);
+  };
+  if (format != TextureFormat::png) {
+    for (const int quality : kSampleQualities) add(encoded(part, format, quality), false);
+  }
+  if (format != TextureFormat::jpeg) add(encoded(part, format, 0), true);
+  return samples;
 }
 
 }  // namespace fovea

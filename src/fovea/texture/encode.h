@@ -44,4 +44,14 @@ double encoding_psnr(const Image8& a, const Image8& b, Content content);
 EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
                               Content content);
 
+/// How well a format does on an image at one of its qualities, from few tiles.
+struct EncodingSample {
+  double psnr_db = 0;             ///< `encoding_psnr`, infinite without loss,
+  double mean_squared_error = 0;  ///< and that of all channels, 0 … 255².
+  double bytes_per_texel = 0;
+};
+
+/// Some qualities from low to high, the same ones for all images, then without loss if the format has such.
+std::vector<EncodingSample> encoding_samples(const Image8& image, TextureFormat format, Content content);
+
 }  // namespace fovea
