@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "report.h"
@@ -10,6 +11,9 @@
 namespace fovea::cli {
 
 namespace {
+
+/// By SizeReason.
+constexpr std::array kReasons{"none", "asked", "seen", "bytes"};
 
 std::string format_name(const std::string& mime_type) {
   return mime_type.rfind("image/", 0) == 0 ? mime_type.substr(6) : "unknown";
@@ -32,21 +36,38 @@ std::string encoding_text(double psnr_db) {
   return std::isfinite(psnr_db) ? fmt::format(" ({:.1f} dB)", psnr_db) : " (without loss)";
 }
 
-std::string tell_images(Session& session, const Shrunk& result) {
+std::string reason_text(SizeReason reason, std::optional<double> per_pixel) {
+  switch (reason) {
+    case SizeReason::seen:
+      return per_pixel ? fmt::format(", seen at {:.2g} texels per pixel", *per_pixel) : ", not seen";
+    case SizeReason::bytes: return ", for the bytes";
+    case SizeReason::asked:
+    case SizeReason::none: break;
+  }
+  return "";
+}
+
+std::string tell_images(Session& session, const Shrunk& result,
+                        std::span<const std::optional<double>> texels_per_pixel) {
   Json& images = session.report["images"] = Json::array();
   TextTable table("lll");
   for (std::size_t i = 0; i < result.images.size(); ++i) {
     const ImageChange& change = result.images[i];
     const bool encoded = change.psnr_db != 0;
+    const std::optional<double> per_pixel = i < texels_per_pixel.size() ? texels_per_pixel[i] : std::nullopt;
     images.push_back({{"image", i},
                       {"name", result.model.images[i].name},
                       {"before", state_json(change.before)},
                       {"after", state_json(change.after)},
                       {"psnr_db", encoded ? number_json(change.psnr_db) : Json()},
+                      {"reason", kReasons[static_cast<std::size_t>(change.reason)]},
+                      {"texels_per_pixel", per_pixel ? number_json(*per_pixel) : Json()},
                       {"kept_because", change.kept_because}});
     std::string what = "as it was";
     if (!change.kept_because.empty()) what += ": " + printable(change.kept_because);
-    if (encoded) what = "-> " + state_text(change.after) + encoding_text(change.psnr_db);
+    if (encoded)
+      what = "-> " + state_text(change.after) + encoding_text(change.psnr_db) +
+             reason_text(change.reason, per_pixel);
     table.row({name_of(result.model, i), state_text(change.before), what});
   }
   return table.text(0);
@@ -90,8 +111,9 @@ std::string tell_atlases(Session& session, const std::vector<AtlasChange>& atlas
 
 }  // namespace
 
-std::string tell_shrunk(Session& session, const Shrunk& result, bool rebake) {
-  const std::string images = tell_images(session, result);
+std::string tell_shrunk(Session& session, const Shrunk& result, bool rebake,
+                        std::span<const std::optional<double>> texels_per_pixel) {
+  const std::string images = tell_images(session, result, texels_per_pixel);
   return images + tell_atlases(session, result.atlases, rebake);
 }
 

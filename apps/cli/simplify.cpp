@@ -210,6 +210,8 @@ class Simplify : public Verb {
     Shrunk result = session.phase("textures", input_, [&] {
       return fovea::shrink_textures(simplified, shrink_options_, {}, session.context);
     });
+    const std::optional<std::int64_t>& most = shrink_options_.max_bytes;
+    texture_bytes_reached_ = !most || result.bytes <= static_cast<std::uint64_t>(*most);
     simplified = result.model;
     texture_text_ =
         simplified.images.empty() ? "textures none\n" : tell_shrunk(session, result, rebake_ == Rebake::on);
@@ -217,7 +219,7 @@ class Simplify : public Verb {
 
   int tell(Session& session, const Snapshot& before, const Snapshot& after,
            const SimplifyResult& result) const {
-    const bool reached = reached_target(result, options_);
+    const bool reached = reached_target(result, options_) && texture_bytes_reached_;
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
     session.report["after"] = to_json(after);
     session.report["result"] = result_json(result, options_, reached);
@@ -237,6 +239,7 @@ class Simplify : public Verb {
   std::string texture_text_;  ///< Lines about what became of textures.
   bool allow_miss_ = false;
   bool textures_ = false;
+  bool texture_bytes_reached_ = true;
   Rebake rebake_ = Rebake::on;
   ShrinkOptions shrink_options_;
   SaliencySource saliency_ = SaliencySource::none;

@@ -1,12 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "field_source.h"
 #include "fovea/io/image_file.h"
 #include "fovea/io/write.h"
+#include "fovea/render/scene.h"
+#include "fovea/render/texel_density.h"
+#include "fovea/render/view.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/salient.h"
 #include "fovea/texture/shrink.h"
@@ -21,6 +26,10 @@ namespace fovea::cli {
 
 namespace {
 
+constexpr int kTargetMissed = 8;
+/// Pixels along the pictures in which texels are counted.
+constexpr int kDensitySize = 256;
+
 /// Where saliency comes from; presets in the order of SaliencyPreset.
 enum class SaliencySource { none, fovea, yang, lee, munaretti };
 
@@ -34,11 +43,16 @@ class TextureVerb : public Verb {
         "colours are mixed as light, normals keep their length, alpha masks their coverage, and seams of "
         "repeating textures close. No image's file grows; what cannot be made smaller stays as it was, with "
         "a "
-        "word why. The meshes are not touched.",
+        "word why. The shape is not touched. Exit code 8 says that all images together take more than "
+        "--texture-bytes; the output is written all the same.",
         {{"fovea texture helmet.glb -o helmet-web.glb --max-texture 1024 --texture-format webp",
           "No side above 1,024 texels, as WebP."},
          {"fovea texture chair.glb -o chair-half.glb --texture-scale 0.5",
           "Half the texels along each side."},
+         {"fovea texture chair.glb -o chair-512.glb --texture-size 512",
+          "Each image as large as it takes where the model is 512 pixels high."},
+         {"fovea texture helmet.glb -o helmet-300k.glb --texture-bytes 300000 --texture-format webp",
+          "All images in 300 kB, as WebP, each as large as it is worth."},
          {"fovea texture room.gltf -o room-jpeg.gltf --texture-format jpeg --texture-psnr 36",
           "JPEG, as small as 36 dB allow."}}};
   }
@@ -46,6 +60,14 @@ class TextureVerb : public Verb {
   void declare(Arguments& arguments) override {
     arguments.add(model_argument(input_));
     arguments.add("Textures", describe(options_));
+    arguments.add(
+        "Textures",
+        {{"texture-size",
+          "The height in pixels at which the model will be shown: each image gets a texel for each "
+          "pixel that shows it, as seen from the views, and no more.",
+          &shown_height_, "pixels", 1, 1 << 16},
+         {"allow-miss", "Exit with 0 even if images take more than --texture-bytes.", &allow_miss_, ""}});
+    arguments.add("Views", describe(views_));
     arguments.add("Warp", describe(options_.warp));
     arguments.add(
         "Warp",
@@ -62,6 +84,11 @@ class TextureVerb : public Verb {
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
     need_format(arguments, write_options_);
+    arguments.need({{"allow-miss"}, "--texture-bytes", [&] { return options_.max_bytes.has_value(); }});
+    arguments.need({{"views", "view-count", "elevation", "fov", "margin"}, "--texture-size", [&] {
+                      return shown_height_.has_value();
+                    }});
+    need_views(arguments, views_);
     arguments.need({{"warp-cells", "warp-rigidity", "warp-floor", "warp-rounds", "warp-tolerance", "saliency",
                      "importance", "maps"},
                     "a --warp other than none",
@@ -76,6 +103,9 @@ class TextureVerb : public Verb {
     session.report["before"] = to_json(before);
     const std::vector<VertexField> field =
         session.phase("saliency", input_, [&] { return looked_at(input, session); });
+    const std::vector<TexelDensity> densities =
+        session.phase("views", input_, [&] { return texels_seen(input.model, session.context); });
+    if (!densities.empty()) options_.scales = needed_scales(densities, static_cast<double>(*shown_height_));
     const Shrunk result = session.phase(
         "textures", input_, [&] { return shrink_textures(input.model, options_, field, session.context); });
     const std::vector<MapFile> maps = maps_.empty() ? std::vector<MapFile>{} : map_files(result.atlases);
@@ -83,11 +113,19 @@ class TextureVerb : public Verb {
     const auto files = session.phase(
         "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
     for (const MapFile& map : maps) write_image(map.picture, map.path, write_options_.force);
-    tell(session, before, snapshot(result.model, measure_output(files, result.model)), result);
-    return 0;
+    return tell(session, before, snapshot(result.model, measure_output(files, result.model)), result,
+                densities);
   }
 
  private:
+  /// None if nobody asks.
+  std::vector<TexelDensity> texels_seen(const Model& model, Context& context) const {
+    if (!shown_height_) return {};
+    const Pose pose = rest_pose(model);
+    const RenderScene scene = make_render_scene(model, pose, context, nullptr, SceneTextures::none);
+    return texel_densities(model, scene, views_of(views_, model, pose, scene.sphere), kDensitySize, context);
+  }
+
   struct MapFile {
     std::string path;
     Image8 picture;
@@ -151,9 +189,11 @@ class TextureVerb : public Verb {
   }
 
   void check_request() const {
-    if (options_.scale == 1 && options_.max_side == 0 && options_.output.format == TextureOutput::keep) {
+    if (options_.scale == 1 && options_.max_side == 0 && !options_.max_bytes && !shown_height_ &&
+        options_.output.format == TextureOutput::keep) {
       throw Error(ErrorKind::usage, "nothing is asked for", {},
-                  "give --texture-scale, --max-texture or --texture-format, for example --max-texture 1024");
+                  "give --texture-size, --texture-bytes, --texture-scale, --max-texture or --texture-format, "
+                  "for example --max-texture 1024");
     }
     check_input(input_);
     check_output(output_, "small.glb", {input_}, write_options_.force,
@@ -161,12 +201,30 @@ class TextureVerb : public Verb {
     if (!maps_.empty()) check_image_output(maps_, true);
   }
 
-  void tell(Session& session, const Snapshot& before, const Snapshot& after, const Shrunk& result) const {
+  bool reached(const Shrunk& result) const {
+    return !options_.max_bytes || result.bytes <= static_cast<std::uint64_t>(*options_.max_bytes);
+  }
+
+  /// Texels to a pixel at the height asked for, before anything changes; none if no pixel shows the image.
+  std::optional<double> texels_per_pixel(const std::vector<TexelDensity>& densities,
+                                         std::size_t image) const {
+    if (densities.empty() || densities[image].pixels() == 0) return std::nullopt;
+    return densities[image].quantile(kCoarsePixels) / static_cast<double>(*shown_height_);
+  }
+
+  int tell(Session& session, const Snapshot& before, const Snapshot& after, const Shrunk& result,
+           const std::vector<TexelDensity>& densities) const {
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
     session.report["after"] = to_json(after);
+    std::vector<std::optional<double>> per_pixel;
+    for (std::size_t i = 0; i < densities.size(); ++i) per_pixel.push_back(texels_per_pixel(densities, i));
     session.print_summary(fmt::format("{} -> {}\n{}{}time     {}\n", printable(input_), printable(output_),
-                                      comparison_text(before, after), tell_shrunk(session, result, false),
-                                      session.spent_text()));
+                                      comparison_text(before, after),
+                                      tell_shrunk(session, result, false, per_pixel), session.spent_text()));
+    session.report["reached"] = reached(result);
+    if (reached(result)) return 0;
+    if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");
+    return allow_miss_ ? 0 : kTargetMissed;
   }
 
   std::string input_;
@@ -174,6 +232,9 @@ class TextureVerb : public Verb {
   std::string importance_;
   std::string maps_;
   SaliencySource saliency_ = SaliencySource::none;
+  std::optional<std::int64_t> shown_height_;
+  bool allow_miss_ = false;
+  ViewOptions views_;
   ShrinkOptions options_;
   ReadOptions read_options_;
   WriteOptions write_options_;

@@ -91,6 +91,44 @@ TEST(EncodingPsnr, ColorsAreBrightnessMostly) {
   EXPECT_EQ(encoding_psnr(grey, grey, Content::colors), kNoLoss);
 }
 
+/// Black, but for a square of thin coloured lines.
+Image8 lines(int side) {
+  Image8 image(side, side, 3, ColorEncoding::srgb);
+  for (int y = 32; y < 48; ++y) {
+    for (int x = 32; x < 48; ++x) {
+      if (x % 4 == 0) image.at(x, y)[1] = 200;
+      if (y % 5 == 0) image.at(x, y)[2] = 180;
+    }
+  }
+  return image;
+}
+
+TEST(EncodingPsnr, WhatIsBlackAllAroundCountsAsIfItWereNot) {
+  const Image8 small = lines(48), large = lines(480);
+  Image8 worse = small, large_worse = large;
+  for (int y = 32; y < 48; ++y) {
+    for (int x = 32; x < 48; ++x) worse.at(x, y)[1] = large_worse.at(x, y)[1] = 30;
+  }
+  const double found = encoding_psnr(large, large_worse, Content::colors);
+  EXPECT_DOUBLE_EQ(found, encoding_psnr(small, worse, Content::colors));
+  const double whole = psnr(mean_squared_error(large, large_worse));
+  EXPECT_LT(found, whole - 15);
+}
+
+TEST(EncodeToPsnr, ThinLinesKeepTheirColors) {
+  const Image8 image = lines(256);
+  const EncodedTexture found = encode_to_psnr(image, TextureFormat::webp, 40, Content::colors);
+  const Image8 decoded = decode_image(found.bytes);
+  EXPECT_GE(found.psnr_db, 40);
+  for (int y = 33; y < 35; ++y) EXPECT_NEAR(decoded.at(36, y)[1], 200, 40);
+}
+
+TEST(EncodeToPsnr, LargeImagesWithLittleInThemAreFoundToBeNearEnough) {
+  const EncodedTexture found = encode_to_psnr(lines(1200), TextureFormat::jpeg, 35, Content::colors);
+  EXPECT_GE(found.psnr_db, 35);
+  EXPECT_GT(found.quality, 1);
+}
+
 TEST(EncodeToPsnr, OneTexel) {
   for (const TextureFormat format : {TextureFormat::png, TextureFormat::jpeg, TextureFormat::webp})
     EXPECT_FALSE(encode_to_psnr(even(1, 1), format, 40, Content::data).bytes.empty());

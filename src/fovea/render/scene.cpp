@@ -23,7 +23,7 @@ class SceneImages {
 
   std::optional<SceneTexture> use(const Material& material, TextureRole role) {
     const bool is_detail = role != TextureRole::base_color && role != TextureRole::metallic_roughness;
-    if (is_detail && textures_ != SceneTextures::all) return {};
+    if (textures_ == SceneTextures::none || (is_detail && textures_ != SceneTextures::all)) return {};
     const std::optional<TextureUse> use = resolve(model_, texture_ref(material, role));
     if (!use) return {};
     const std::pair key{use->image, encoding(role)};

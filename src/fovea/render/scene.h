@@ -74,6 +74,7 @@ struct RenderScene {
 enum class SceneTextures {
   all,
   base_and_finish,  ///< Base colour, metalness and roughness.
+  none,
 };
 
 /// Poses all instances and decodes the images in parallel. Images that cannot be decoded (KTX2, damaged)

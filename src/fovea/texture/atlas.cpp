@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
@@ -22,28 +21,10 @@ namespace fovea {
 
 namespace {
 
-using Json = nlohmann::json;
-
 /// Of an image: how far coordinates may lie beyond it and still count as inside.
 constexpr double kBeyond = 2e-3;
 /// And how far, to be brought back inside.
 constexpr double kAstray = 0.25;
-
-/// The materials that a part can have: its own and those of its variants (KHR_materials_variants).
-std::set<int> materials_of(const Model& model, const Part& part) {
-  std::set<int> materials{part.material};
-  const Json json = Json::parse(part.json, nullptr, false);
-  const auto mappings = Json::json_pointer("/extensions/KHR_materials_variants/mappings");
-  if (!json.is_object() || !json.contains(mappings) || !json[mappings].is_array()) return materials;
-  for (const Json& mapping : json[mappings]) {
-    const Json material = mapping.is_object() ? mapping.value("material", Json()) : Json();
-    if (!material.is_number_integer()) continue;
-    const auto m = material.get<std::int64_t>();
-    if (m >= 0 && m < static_cast<std::int64_t>(model.materials.size()))
-      materials.insert(static_cast<int>(m));
-  }
-  return materials;
-}
 
 /// Which images are joined by which parts.
 class Finder {
@@ -84,7 +65,7 @@ class Finder {
 
  private:
   void add_part(std::uint32_t mesh, std::uint32_t number, const Part& part) {
-    for (const int material : materials_of(model_, part)) {
+    for (const int material : part_materials(model_, part)) {
       if (material < 0) continue;
       is_shown_.insert(material);
       for (const TextureRead& read : reads_[static_cast<std::size_t>(material)]) {

@@ -33,8 +33,8 @@ std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int w
                                          const Context& context);
 
 /// The image with all that no triangle covers (`covered_texels`) filled from what is around, its colours
-/// beyond the triangles' borders among them; but for the texels beside those that are covered, which are mixed
-/// into what shows. In place. O(#F + #texels), parallel.
+/// beyond the triangles' borders among them; but for the texels beside those that are covered, which are
+/// mixed into what shows. In place. O(#F + #texels), parallel.
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context);
 
 }  // namespace fovea

@@ -1,6 +1,7 @@
 #include "fovea/texture/encode.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +13,12 @@ namespace fovea {
 
 namespace {
 
-constexpr int kTile = 64, kTilesAcross = 8;
+constexpr int kTile = 64, kTilesAcross = 8, kSampleTilesAcross = 4;
+constexpr std::array kSampleQualities{25, 55, 78, 90, 97};
+/// Squares whose error is looked at, in texels; nothing is to be seen where values are no further apart than
+/// kEven. Where something is, a file may be worse than asked for by so many dB.
+constexpr int kSquare = 16, kEven = 8;
+constexpr double kBusyDb = 2;
 constexpr double kNoLoss = std::numeric_limits<double>::infinity();
 
 std::vector<std::uint8_t> encoded(const Image8& image, TextureFormat format, int quality) {
@@ -22,6 +28,69 @@ std::vector<std::uint8_t> encoded(const Image8& image, TextureFormat format, int
     case TextureFormat::webp: return encode_webp(image, quality == 0 ? 101 : quality);
   }
   throw Error(ErrorKind::internal, "an unknown format of textures");
+}
+
+/// A part of an image: columns [x0, x1), rows [y0, y1).
+struct Square {
+  int x0, y0, x1, y1;
+};
+
+struct SquaredError {
+  double sum = 0;
+  std::int64_t texels = 0;
+
+  double mean() const { return sum / static_cast<double>(texels); }
+  SquaredError& operator+=(const SquaredError& other) {
+    sum += other.sum;
+    texels += other.texels;
+    return *this;
+  }
+};
+
+/// `error` of two texels, summed over a part of two images.
+template <class F>
+SquaredError summed(const Image8& a, const Image8& b, const Square& square, const F& error) {
+  SquaredError result;
+  for (int y = square.y0; y < square.y1; ++y)
+    for (int x = square.x0; x < square.x1; ++x) result.sum += error(a.at(x, y), b.at(x, y));
+  result.texels = std::int64_t{square.x1 - square.x0} * (square.y1 - square.y0);
+  return result;
+}
+
+SquaredError color_error(const Image8& a, const Image8& b, const Square& square) {
+  return summed(a, b, square, [&](const std::uint8_t* p, const std::uint8_t* q) {
+    const auto off = [&](std::size_t k) { return static_cast<double>(p[k]) - q[k]; };
+    const double y = 0.299 * off(0) + 0.587 * off(1) + 0.114 * off(2);
+    const double cb = 0.564 * (off(2) - y), cr = 0.713 * (off(0) - y);
+    const double colors = (6 * y * y + cb * cb + cr * cr) / 8;
+    return a.channels == 4 ? (3 * colors + off(3) * off(3)) / 4 : colors;
+  });
+}
+
+SquaredError data_error(const Image8& a, const Image8& b, const Square& square) {
+  return summed(a, b, square, [&](const std::uint8_t* p, const std::uint8_t* q) {
+    double sum = 0;
+    for (int k = 0; k < a.channels; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]);
+    return sum / a.channels;
+  });
+}
+
+/// Nothing is to be seen in it.
+bool is_even(const Image8& image, const Square& square) {
+  std::array<std::uint8_t, 4> low{255, 255, 255, 255}, high{};
+  for (int y = square.y0; y < square.y1; ++y) {
+    for (int x = square.x0; x < square.x1; ++x) {
+      for (int k = 0; k < image.channels; ++k) {
+        const auto c = static_cast<std::size_t>(k);
+        low[c] = std::min(low[c], image.at(x, y)[k]);
+        high[c] = std::max(high[c], image.at(x, y)[k]);
+      }
+    }
+  }
+  for (std::size_t c = 0; c < static_cast<std::size_t>(image.channels); ++c) {
+    if (high[c] - low[c] > kEven) return false;
+  }
+  return true;
 }
 
 /// Decoders may turn grey into colours, or leave out alpha that is opaque.
@@ -48,23 +117,30 @@ EncodedTexture measured(const Image8& image, TextureFormat format, int quality, 
   return result;
 }
 
-/// Tiles from all over the image side by side, or all of it if it is not larger.
-Image8 excerpt(const Image8& image) {
-  constexpr int kSide = kTile * kTilesAcross;
-  if (image.width <= kSide && image.height <= kSide) return image;
-  const int across = std::min(kTilesAcross, std::max(image.width / kTile, 1));
-  const int down = std::min(kTilesAcross, std::max(image.height / kTile, 1));
+/// Squares of kTile² from all over the image, in which something is to be seen if there are such, side by
+/// side, `most_across` in a row; all of the image if it is not larger.
+Image8 excerpt(const Image8& image, int most_across) {
+  const int side = kTile * most_across;
+  if (image.width <= side && image.height <= side) return image;
   const int width = std::min(kTile, image.width), height = std::min(kTile, image.height);
-  Image8 result(across * width, down * height, image.channels, image.encoding);
-  const auto start = [](int tile, int tiles, int size, int side) {
-    return tiles > 1 ? static_cast<int>(std::int64_t{side - size} * tile / (tiles - 1)) : (side - size) / 2;
-  };
-  for (int y = 0; y < result.height; ++y) {
-    for (int tile = 0; tile < across; ++tile) {
-      const int from_x = start(tile, across, width, image.width);
-      const int from_y = start(y / height, down, height, image.height) + y % height;
-      std::copy_n(image.at(from_x, from_y), width * image.channels, result.at(tile * width, y));
+  std::vector<Square> tiles, busy;
+  for (int y = 0; y + height <= image.height; y += height) {
+    for (int x = 0; x + width <= image.width; x += width) {
+      tiles.push_back({x, y, x + width, y + height});
+      if (!is_even(image, tiles.back())) busy.push_back(tiles.back());
     }
+  }
+  if (!busy.empty()) tiles = std::move(busy);
+  const std::size_t count = std::min(tiles.size(), static_cast<std::size_t>(most_across * most_across));
+  const auto across = static_cast<int>(std::min(count, static_cast<std::size_t>(most_across)));
+  const int down = static_cast<int>(count) / across;
+  Image8 result(across * width, down * height, image.channels, image.encoding);
+  for (int i = 0; i < across * down; ++i) {
+    const Square& tile =
+        tiles[static_cast<std::size_t>(i) * tiles.size() / static_cast<std::size_t>(across * down)];
+    for (int y = 0; y < height; ++y)
+      std::copy_n(image.at(tile.x0, tile.y0 + y), width * image.channels,
+                  result.at(i % across * width, i / across * height + y));
   }
   return result;
 }
@@ -95,19 +171,19 @@ std::string mime_type(TextureFormat format) {
 }
 
 double encoding_psnr(const Image8& a, const Image8& b, Content content) {
-  if (content == Content::data || a.channels < 3) return psnr(mean_squared_error(a, b));
   check_same_shape(a, b);
-  double colors = 0, alpha = 0;
-  const auto step = static_cast<std::size_t>(a.channels);
-  for (std::size_t i = 0; i < a.pixels.size(); i += step) {
-    const auto off = [&](std::size_t k) { return static_cast<double>(a.pixels[i + k]) - b.pixels[i + k]; };
-    const double y = 0.299 * off(0) + 0.587 * off(1) + 0.114 * off(2);
-    const double cb = 0.564 * (off(2) - y), cr = 0.713 * (off(0) - y);
-    colors += (6 * y * y + cb * cb + cr * cr) / 8;
-    if (step == 4) alpha += off(3) * off(3);
+  const bool is_color = content == Content::colors && a.channels >= 3;
+  SquaredError all, busy;
+  for (int y = 0; y < a.height; y += kSquare) {
+    for (int x = 0; x < a.width; x += kSquare) {
+      const Square square{x, y, std::min(x + kSquare, a.width), std::min(y + kSquare, a.height)};
+      const SquaredError error = is_color ? color_error(a, b, square) : data_error(a, b, square);
+      all += error;
+      if (!is_even(a, square)) busy += error;
+    }
   }
-  const double texels = static_cast<double>(a.pixels.size() / step);
-  return psnr((step == 4 ? (3 * colors + alpha) / 4 : colors) / texels);
+  const double whole = psnr(all.mean());
+  return busy.texels > 0 ? std::min(whole, psnr(busy.mean()) + kBusyDb) : whole;
 }
 
 EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
@@ -116,12 +192,12 @@ EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double 
   if (format == TextureFormat::png) return without_loss();
   if (!std::isfinite(least_psnr_db))
     return format == TextureFormat::webp ? without_loss() : measured(image, format, 100, content);
-  const Image8 part = excerpt(image);
+  const Image8 part = excerpt(image, kTilesAcross);
   int quality = lowest_quality(part, format, least_psnr_db, content);
   EncodedTexture result = measured(image, format, quality, content);
   // The excerpt is not the whole: some steps more may be needed.
-  while (result.psnr_db < least_psnr_db && quality < 100) {
-    quality = std::min(quality + 2, 100);
+  for (int step = 2; result.psnr_db < least_psnr_db && quality < 100; step *= 2) {
+    quality = std::min(quality + step, 100);
     result = measured(image, format, quality, content);
   }
   if (format == TextureFormat::jpeg) return result;
@@ -130,6 +206,26 @@ EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double 
   if (encoded(part, format, 0).size() >= encoded(part, format, quality).size()) return result;
   EncodedTexture exact = without_loss();
   return exact.bytes.size() < result.bytes.size() ? exact : result;
+}
+
+std::vector<EncodingSample> encoding_samples(const Image8& image, TextureFormat format, Content content) {
+  const Image8 part = excerpt(image, kSampleTilesAcross);
+  const auto texels = static_cast<double>(part.width) * part.height;
+  std::vector<EncodingSample> samples;
+  const auto add = [&](const std::vector<std::uint8_t>& bytes, bool exact) {
+    EncodingSample& sample = samples.emplace_back();
+    sample.bytes_per_texel = static_cast<double>(bytes.size()) / texels;
+    sample.psnr_db = kNoLoss;
+    if (exact) return;
+    const Image8 decoded = with_channels(decode_image(bytes), part.channels);
+    sample.psnr_db = encoding_psnr(part, decoded, content);
+    sample.mean_squared_error = mean_squared_error(part, decoded);
+  };
+  if (format != TextureFormat::png) {
+    for (const int quality : kSampleQualities) add(encoded(part, format, quality), false);
+  }
+  if (format != TextureFormat::jpeg) add(encoded(part, format, 0), true);
+  return samples;
 }
 
 }  // namespace fovea

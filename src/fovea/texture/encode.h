@@ -28,7 +28,9 @@ enum class Content {
 
 /// Peak signal to noise ratio in dB of stored values, infinite for equal images: of BT.601's Y, Cb and Cr by
 /// 6 : 1 : 1 for colours (the usual PSNR-YUV), alpha as a fourth channel beside them; of the channels as they
-/// are for data. Throws Error(usage) for images of different size or channels.
+/// are for data. Of the whole image, or of the squares of 16² texels in which `a` shows something (values
+/// differ by more than 8) and 2 dB more if that is less: thin lines on a black image count. Throws
+/// Error(usage) for images of different size or channels.
 double encoding_psnr(const Image8& a, const Image8& b, Content content);
 
 /// The smallest file of that format that decodes to at least `least_psnr_db` (`encoding_psnr`), or one
@@ -36,10 +38,20 @@ double encoding_psnr(const Image8& a, const Image8& b, Content content);
 /// which has to be opaque or of no use, and where 100 is not near enough it is 100. An infinite
 /// `least_psnr_db` asks for no loss.
 ///
-/// The quality is looked for on at most 512² texels, in tiles from all over the image; then the whole is
-/// encoded, again at a higher quality if it missed. Deterministic. Throws Error(unsupported) for sides that
-/// the format does not have (WebP 16,383, JPEG 65,535).
+/// The quality is looked for on at most 512² texels, in tiles from all over the image that show something;
+/// then the whole is encoded, again at a higher quality if it missed. Deterministic. Throws
+/// Error(unsupported) for sides that the format does not have (WebP 16,383, JPEG 65,535).
 EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
                               Content content);
+
+/// How well a format does on an image at one of its qualities, from few tiles.
+struct EncodingSample {
+  double psnr_db = 0;             ///< `encoding_psnr`, infinite without loss,
+  double mean_squared_error = 0;  ///< and that of all channels, 0 … 255².
+  double bytes_per_texel = 0;
+};
+
+/// Some qualities from low to high, the same ones for all images, then without loss if the format has such.
+std::vector<EncodingSample> encoding_samples(const Image8& image, TextureFormat format, Content content);
 
 }  // namespace fovea

@@ -84,6 +84,15 @@ ImageChange::State state_of(const EncodedImage& image) {
           image.bytes.size()};
 }
 
+TextureFormat output_format(const Image8& image, const std::string& mime_type,
+                            const ImageOutputOptions& options) {
+  return format_of(mime_type, options.format, has_alpha(image));
+}
+
+Content content_of(const ImageUse& use) {
+  return use.meaning.kind == TexelMeaning::Kind::color ? Content::colors : Content::data;
+}
+
 bool keeps_format(const std::string& type, const ImageOutputOptions& options) {
   return options.format == TextureOutput::keep || mime_type(format_of(type, options.format, false)) == type;
 }
@@ -96,10 +105,10 @@ Image8 without_idle_alpha(Image8 image, const ImageUse& use) {
 std::optional<ImageOutput> encode_output(const Image8& image, const ImageUse& use,
                                          const std::string& mime_type, std::uint64_t most_bytes,
                                          const ImageOutputOptions& options) {
-  const TextureFormat format = format_of(mime_type, options.format, has_alpha(image));
+  const TextureFormat format = output_format(image, mime_type, options);
   const double psnr =
       options.psnr_db >= kMostPsnr ? std::numeric_limits<double>::infinity() : options.psnr_db;
-  const Content content = use.meaning.kind == TexelMeaning::Kind::color ? Content::colors : Content::data;
+  const Content content = content_of(use);
   ImageOutput output = encode(image, format, psnr, content);
   if (output.texture.bytes.size() < most_bytes) return output;
   return encode_below(image, format, std::min(psnr, kMostPsnr), content, most_bytes);

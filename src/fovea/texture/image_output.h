@@ -21,6 +21,22 @@ struct ImageOutputOptions {
 };
 OptionList describe(ImageOutputOptions& options);
 
+/// What the size of an image follows from.
+enum class SizeReason {
+  none,   ///< It is as it was.
+  asked,  ///< A scale, or the longest side allowed.
+  seen,   ///< What pictures show of it.
+  bytes,  ///< What all files may take together.
+};
+
+/// How an image is to become.
+struct WantedImage {
+  int width = 0, height = 0;
+  double psnr_db = 0;  ///< Of the encoding.
+  bool stays = false;  ///< Its file does, unless texels move.
+  SizeReason reason = SizeReason::none;
+};
+
 /// One image before and after.
 struct ImageChange {
   struct State {
@@ -29,12 +45,20 @@ struct ImageChange {
     std::uint64_t bytes = 0;
   };
   State before, after;
-  double psnr_db = 0;        ///< Of the encoding, infinite without loss; 0 if the image was not encoded anew.
+  double psnr_db = 0;  ///< Of the encoding, infinite without loss; 0 if the image was not encoded anew.
+  SizeReason reason = SizeReason::none;
   std::string kept_because;  ///< Why it is as it was though it was to be smaller.
 };
 
 /// What a file says of itself; sizes are 0 if it does not tell.
 ImageChange::State state_of(const EncodedImage& image);
+
+/// The format that an image gets.
+TextureFormat output_format(const Image8& image, const std::string& mime_type,
+                            const ImageOutputOptions& options);
+
+/// What it is, to the eye.
+Content content_of(const ImageUse& use);
 
 /// Whether an image of that type would stay of it.
 bool keeps_format(const std::string& mime_type, const ImageOutputOptions& options);

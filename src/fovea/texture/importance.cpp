@@ -159,6 +159,23 @@ TextureImportance texture_importance(const Model& model, const Atlas& atlas,
   return maps;
 }
 
+double seen_area(const Model& model, const Atlas& atlas, std::span<const VertexField> field) {
+  const std::vector<VertexField> fields(field.begin(), field.end());
+  if (!fields.empty()) check_fields(model, fields);
+  const std::vector<double> scales = largest_scales(model);
+  double sum = 0;
+  for (const AtlasFace& face : atlas_faces(model, atlas)) {
+    double looked_at = 1;
+    if (!fields.empty()) {
+      looked_at = 0;
+      for (const VertexId v : model.meshes[face.mesh].surface.triangles[face.face])
+        looked_at += static_cast<double>(fields[face.mesh][v]) / 3;
+    }
+    sum += looked_at * shape_of(model, face, scales[face.mesh]).area;
+  }
+  return sum;
+}
+
 ImageF saliency_importance(const TextureImportance& maps) {
   return combined(maps, [&](std::size_t i) { return maps.saliency.pixels[i] * maps.distortion.pixels[i]; });
 }

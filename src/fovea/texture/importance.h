@@ -31,6 +31,10 @@ TextureImportance texture_importance(const Model& model, const Atlas& atlas,
                                      std::span<const VertexField> field, int longest_side,
                                      const Context& context);
 
+/// The surface of an atlas's triangles as the scene shows it, each times the mean of the field at its
+/// corners. Of a mesh that is shown several times the largest counts. Throws Error(usage). O(#F).
+double seen_area(const Model& model, const Atlas& atlas, std::span<const VertexField> field);
+
 /// IM = N(STM) · N(TDM) of the paper. N scales by constants, which do not count here.
 ImageF saliency_importance(const TextureImportance& maps);
 /// Detail alone, as Balmelli et al. ("Space-optimized texture maps", 2002) have it: √detail.

@@ -17,6 +17,7 @@
 #include "fovea/model/check_fields.h"
 #include "fovea/model/texture_use.h"
 #include "fovea/texture/bake.h"
+#include "fovea/texture/byte_budget.h"
 #include "fovea/texture/image_use.h"
 #include "fovea/texture/normal_bake.h"
 #include "fovea/texture/rebake.h"
@@ -28,13 +29,34 @@ namespace {
 /// Most texels of an atlas's images together whose texels move: all are in memory at once.
 constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 
-/// Width and height that an image should have.
-std::array<int, 2> wanted_size(const ImageChange::State& image, const ShrinkOptions& options) {
+/// How often texels are moved in search of images that take no more than they may, and by how much more
+/// than they are over they get less.
+constexpr int kMovingRounds = 3;
+constexpr double kHaste = 0.99;
+
+/// How an image should be but for what all may take together.
+WantedImage limit_of(const ImageChange::State& image, double seen_scale, const ShrinkOptions& options) {
   double scale = options.scale;
   if (options.max_side > 0)
     scale = std::min(scale, static_cast<double>(options.max_side) / std::max(image.width, image.height));
-  const auto side = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
-  return {side(image.width), side(image.height)};
+  const bool is_seen = seen_scale < std::min(scale, 1.0);
+  if (is_seen) scale = seen_scale;
+  const auto side = [&](int n) {
+    return std::max(1, static_cast<int>(std::lround(n * std::min(scale, 1.0))));
+  };
+  WantedImage wanted{side(image.width), side(image.height), options.output.psnr_db};
+  const bool is_same = wanted.width == image.width && wanted.height == image.height;
+  wanted.stays = is_same && keeps_format(image.mime_type, options.output);
+  if (!is_same) wanted.reason = is_seen ? SizeReason::seen : SizeReason::asked;
+  return wanted;
+}
+
+std::vector<WantedImage> limits_of(const Model& model, const ShrinkOptions& options) {
+  std::vector<WantedImage> limits;
+  for (std::size_t i = 0; i < model.images.size(); ++i)
+    limits.push_back(
+        limit_of(state_of(model.images[i]), i < options.scales.size() ? options.scales[i] : 1.0, options));
+  return limits;
 }
 
 WarpAim aim_of(TexelMoves moves) {
@@ -42,26 +64,44 @@ WarpAim aim_of(TexelMoves moves) {
   return moves == TexelMoves::frequency ? WarpAim::frequency : WarpAim::balanced;
 }
 
+/// A model before its images change.
+struct Prepared {
+  Model model;
+  std::vector<Atlas> atlases;
+  std::vector<Atlas> originals;  // of the model that it was simplified from, if images are baked anew
+  std::set<int> new_maps;        // images that are to hold normals which no image held
+};
+
+Prepared prepare(const Model& model, const RebakeOptions& options) {
+  Prepared result{model, {}, {}, {}};
+  if (options.original != nullptr) {
+    result.originals = find_atlases(*options.original);
+    for (const Atlas& atlas : result.originals)
+      if (atlas.fixed_because.empty()) bring_inside(result.model, atlas);
+    if (options.normals) result.new_maps = add_normal_maps(result.model, find_atlases(result.model));
+  }
+  result.atlases = find_atlases(result.model);
+  return result;
+}
+
 /// Makes images smaller, one atlas after the other; the model changes as it goes.
 class Shrinker {
  public:
-  Shrinker(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
-           Context& context)
-      : options_(options), field_(field), context_(context), result_{model, {}, {}} {
-    if (options.rebake.original != nullptr) {
-      originals_ = find_atlases(*options.rebake.original);
-      for (const Atlas& atlas : originals_)
-        if (atlas.fixed_because.empty()) bring_inside(result_.model, atlas);
-      if (options.rebake.normals) new_maps_ = add_normal_maps(result_.model, find_atlases(result_.model));
-    }
-    uses_ = image_uses(result_.model);
-    for (const EncodedImage& image : result_.model.images) {
+  /// `wanted` [#images] of the prepared model.
+  Shrinker(const Prepared& prepared, std::span<const WantedImage> wanted, const ShrinkOptions& options,
+           std::span<const VertexField> field, Context& context)
+      : prepared_(prepared),
+        wanted_(wanted),
+        options_(options),
+        field_(field),
+        context_(context),
+        uses_(image_uses(prepared.model)) {
+    result_.model = prepared.model;
+    for (const EncodedImage& image : prepared.model.images) {
       ImageChange& change = result_.images.emplace_back();
       change.before = change.after = state_of(image);
     }
   }
-
-  const Model& model() const { return result_.model; }
 
   /// All images of an atlas, or each for itself where they cannot be handled together.
   void shrink(const Atlas& atlas) {
@@ -80,12 +120,12 @@ class Shrinker {
     rebake_.reset();
   }
 
-  void keep(int image, const std::string& why) {
-    result_.images[index(image)].kept_because = why;
-    context_.report("image-kept", fmt::format("stays as it is: {}", why), fmt::format("image {}", image));
-  }
+  void keep(int image, const std::string& why) { result_.images[index(image)].kept_because = why; }
 
-  Shrunk take() { return std::move(result_); }
+  Shrunk take() {
+    for (const EncodedImage& image : result_.model.images) result_.bytes += image.bytes.size();
+    return std::move(result_);
+  }
 
  private:
   void change_images(const Atlas& atlas, const std::vector<int>& changing, AtlasChange& change) {
@@ -104,9 +144,9 @@ class Shrinker {
   /// Sets `rebake_` if the atlas's images are to be baked anew and can be.
   void start_rebake(const Atlas& atlas, AtlasChange& change) {
     if (options_.rebake.original == nullptr) return;
-    const auto same = std::ranges::find(originals_, atlas.images.front(),
+    const auto same = std::ranges::find(prepared_.originals, atlas.images.front(),
                                         [](const Atlas& other) { return other.images.front(); });
-    if (same == originals_.end()) {
+    if (same == prepared_.originals.end()) {
       change.not_rebaked_because = "the original does not have it";
     } else if (!same->fixed_because.empty()) {
       change.not_rebaked_because = same->fixed_because;
@@ -137,16 +177,17 @@ class Shrinker {
   Image8 rebaked(int image, const Image8& picture) {
     if (!bakes_normals(image) || picture.channels != 3)
       return rebake_->baked(picture, uses_[index(image)].meaning, context_);
-    return rebake_->baked_normals(new_maps_.contains(image) ? nullptr : &picture, *normal_scale(image),
-                                  picture.width, picture.height, context_);
+    return rebake_->baked_normals(prepared_.new_maps.contains(image) ? nullptr : &picture,
+                                  *normal_scale(image), picture.width, picture.height, context_);
   }
 
   static std::size_t index(int image) { return static_cast<std::size_t>(image); }
   const ImageChange::State& before(int image) const { return result_.images[index(image)].before; }
 
+  const WantedImage& wanted(int image) const { return wanted_[index(image)]; }
+
   bool is_smaller(int image) const {
-    const auto [width, height] = wanted_size(before(image), options_);
-    return width != before(image).width || height != before(image).height;
+    return wanted(image).width != before(image).width || wanted(image).height != before(image).height;
   }
 
   /// Says why if it should but cannot.
@@ -155,8 +196,7 @@ class Shrinker {
       keep(image, "it cannot be decoded");
       return false;
     }
-    if (rebake_ == nullptr && !is_smaller(image) && keeps_format(before(image).mime_type, options_.output))
-      return false;
+    if (rebake_ == nullptr && wanted(image).stays) return false;
     if (uses_[index(image)].is_ambiguous) {
       keep(image, "materials read it in different ways");
       return false;
@@ -175,15 +215,18 @@ class Shrinker {
   }
 
   std::optional<ImageOutput> encoded(int image, const Image8& picture) const {
-    const bool is_new = new_maps_.contains(image);
+    ImageOutputOptions output = options_.output;
+    output.psnr_db = wanted(image).psnr_db;
+    const bool is_new = prepared_.new_maps.contains(image);
     return encode_output(picture, uses_[index(image)], before(image).mime_type,
-                         is_new ? std::numeric_limits<std::uint64_t>::max() : before(image).bytes,
-                         options_.output);
+                         is_new ? std::numeric_limits<std::uint64_t>::max() : before(image).bytes, output);
   }
 
-  void set(int image, ImageOutput output, int width, int height) {
+  void set(int image, ImageOutput output) {
     ImageChange& change = result_.images[index(image)];
-    change.after = {mime_type(output.format), width, height, output.texture.bytes.size()};
+    change.after = {mime_type(output.format), wanted(image).width, wanted(image).height,
+                    output.texture.bytes.size()};
+    change.reason = wanted(image).reason;
     change.psnr_db = output.texture.psnr_db;
     EncodedImage& file = result_.model.images[index(image)];
     file.mime_type = change.after.mime_type;
@@ -209,8 +252,9 @@ class Shrinker {
       }
       std::vector<WarpedImage> wanted;
       for (std::size_t i = 0; i < pictures.size(); ++i) {
-        const auto [width, height] = wanted_size(before(atlas.images[i]), options_);
-        wanted.push_back({&pictures[i], uses_[index(atlas.images[i])].meaning, width, height, nullptr});
+        const WantedImage& size = this->wanted(atlas.images[i]);
+        wanted.push_back(
+            {&pictures[i], uses_[index(atlas.images[i])].meaning, size.width, size.height, nullptr});
         if (rebake_ != nullptr && !bakes_normals(atlas.images[i])) wanted.back().original = &originals[i];
       }
       AtlasWarp warp = warp_atlas(result_.model, atlas, wanted, field_, aim_of(options_.moves), options_.warp,
@@ -232,8 +276,7 @@ class Shrinker {
         outputs.push_back(std::move(*output));
       }
       result_.model = std::move(warp.model);
-      for (std::size_t i = 0; i < outputs.size(); ++i)
-        set(atlas.images[i], std::move(outputs[i]), wanted[i].width, wanted[i].height);
+      for (std::size_t i = 0; i < outputs.size(); ++i) set(atlas.images[i], std::move(outputs[i]));
       return "";
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
@@ -244,7 +287,7 @@ class Shrinker {
   void resize(int image, std::span<const AtlasFace> faces) {
     try {
       const ImageUse& use = uses_[index(image)];
-      const auto [width, height] = wanted_size(before(image), options_);
+      const auto& [width, height, psnr_db, stays, reason] = wanted(image);
       Image8 picture = decoded(image);
       const Image8 old = rebake_ != nullptr && !is_smaller(image) ? picture : Image8();
       if (rebake_ != nullptr) {
@@ -256,9 +299,9 @@ class Shrinker {
         picture = resized(picture, width, height, use.meaning, use.wrap_u, use.wrap_v, context_);
       std::optional<ImageOutput> output = encoded(image, picture);
       if (!output) return keep(image, "in the wanted format it would be larger");
-      if (old.width > 0 && !new_maps_.contains(image) && !is_better(image, old, picture, *output))
+      if (old.width > 0 && !prepared_.new_maps.contains(image) && !is_better(image, old, picture, *output))
         return keep(image, "baked anew it would show no more");
-      set(image, std::move(*output), width, height);
+      set(image, std::move(*output));
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
       keep(image, error.message());
@@ -275,15 +318,80 @@ class Shrinker {
     return likeness(without_idle_alpha(decode_image(output.texture.bytes), use)) > likeness(old);
   }
 
+  const Prepared& prepared_;
+  std::span<const WantedImage> wanted_;
   const ShrinkOptions& options_;
   std::span<const VertexField> field_;
   Context& context_;
-  std::vector<Atlas> originals_;         // of the model that was simplified
   std::unique_ptr<AtlasRebake> rebake_;  // of the atlas at hand, if it is baked anew
-  std::set<int> new_maps_;               // images
   std::vector<ImageUse> uses_;
   Shrunk result_;
 };
+
+/// With images of these sizes.
+Shrunk shrunk(const Prepared& prepared, std::span<const WantedImage> wanted, const ShrinkOptions& options,
+              std::span<const VertexField> field, Context& context) {
+  const std::vector<Atlas>& atlases = prepared.atlases;
+  Shrinker shrinker(prepared, wanted, options, field, context);
+  std::set<int> known;
+  for (std::size_t a = 0; a < atlases.size(); ++a) {
+    context.advance_or_throw("textures", static_cast<double>(a) / static_cast<double>(atlases.size()));
+    shrinker.shrink(atlases[a]);
+    known.insert(atlases[a].images.begin(), atlases[a].images.end());
+  }
+  for (int image = 0; image < static_cast<int>(prepared.model.images.size()); ++image) {
+    if (!known.contains(image)) shrinker.keep(image, "no material uses it");
+  }
+  return shrinker.take();
+}
+
+/// With images as small as it takes for all files together.
+Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, ShrinkOptions options,
+                    std::span<const VertexField> field, Context& context) {
+  const std::vector<ImageUse> uses = image_uses(prepared.model);
+  std::vector<WantedImage> known = limits;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (uses[i].is_ambiguous) known[i] = {};
+  }
+  ByteBudget budget(prepared.model, prepared.atlases, known, options.output, field, context);
+  const auto most = static_cast<double>(*options.max_bytes);
+  double goal = most;
+  for (int round = 0;; ++round) {
+    // What moves is encoded at other sizes than was tried: a few times with less, then not at all.
+    if (round == kMovingRounds) {
+      options.moves = TexelMoves::none;
+      goal = most;
+    }
+    std::vector<WantedImage> wanted = budget.choose(goal);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (wanted[i].width < 1) wanted[i] = limits[i];
+    }
+    Shrunk result = shrunk(prepared, wanted, options, field, context);
+    const auto bytes = static_cast<double>(result.bytes);
+    if (bytes <= most) return result;
+    if (options.moves == TexelMoves::none) {
+      context.report("bytes-missed",
+                     fmt::format("image files take {} bytes, {} more than asked for: nothing can be smaller",
+                                 result.bytes, result.bytes - static_cast<std::uint64_t>(*options.max_bytes)),
+                     "");
+      return result;
+    }
+    goal *= kHaste * most / bytes;
+  }
+}
+
+void check_options(const Model& model, const ShrinkOptions& options) {
+  ShrinkOptions checked = options;
+  check(describe(checked));
+  check(describe(checked.warp));
+  if (!options.scales.empty() && options.scales.size() != model.images.size())
+    throw Error(ErrorKind::usage,
+                fmt::format("{} scales for {} images", options.scales.size(), model.images.size()));
+  for (const double scale : options.scales) {
+    if (!(scale > 0 && scale <= 1))
+      throw Error(ErrorKind::usage, fmt::format("a scale of {}, not above 0 up to 1", scale));
+  }
+}
 
 }  // namespace
 
@@ -298,6 +406,10 @@ OptionList describe(ShrinkOptions& o) {
       {"texture-scale", "Scale the sides of all textures by this.", &o.scale, "", 1e-4, 1},
       {"max-texture", "Texels along the longer side of a texture, at most; 0 sets no limit.", &o.max_side,
        "texels", 0, 1 << 16},
+      {"texture-bytes",
+       "Bytes of all image files together, at most: sizes and qualities are chosen so that least is lost of "
+       "what is seen.",
+       &o.max_bytes, "bytes", 1},
       {"warp",
        "Move texels within textures that become smaller to where they matter: balanced by what would be "
        "lost, where it shows "
@@ -313,23 +425,19 @@ OptionList describe(ShrinkOptions& o) {
 
 Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
                        Context& context) {
-  ShrinkOptions checked = options;
-  check(describe(checked));
-  check(describe(checked.warp));
+  check_options(model, options);
   if (!field.empty()) check_fields(model, field);
   if (options.rebake.original != nullptr) check_simplified(*options.rebake.original, model);
-  Shrinker shrinker(model, options, field, context);
-  const std::vector<Atlas> atlases = find_atlases(shrinker.model());
-  std::set<int> known;
-  for (std::size_t a = 0; a < atlases.size(); ++a) {
-    context.advance_or_throw("textures", static_cast<double>(a) / static_cast<double>(atlases.size()));
-    shrinker.shrink(atlases[a]);
-    known.insert(atlases[a].images.begin(), atlases[a].images.end());
+  const Prepared prepared = prepare(model, options.rebake);
+  const std::vector<WantedImage> limits = limits_of(prepared.model, options);
+  Shrunk result = !options.max_bytes ? shrunk(prepared, limits, options, field, context)
+                                     : within_bytes(prepared, limits, options, field, context);
+  for (std::size_t i = 0; i < result.images.size(); ++i) {
+    const std::string& why = result.images[i].kept_because;
+    if (!why.empty())
+      context.report("image-kept", fmt::format("stays as it is: {}", why), fmt::format("image {}", i));
   }
-  for (int image = 0; image < static_cast<int>(model.images.size()); ++image) {
-    if (!known.contains(image)) shrinker.keep(image, "no material uses it");
-  }
-  return shrinker.take();
+  return result;
 }
 
 }  // namespace fovea

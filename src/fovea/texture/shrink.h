@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,8 +32,10 @@ struct RebakeOptions {
 OptionList describe(RebakeOptions& options);
 
 struct ShrinkOptions {
-  double scale = 1;           ///< Of each side, above 0 up to 1.
-  std::int64_t max_side = 0;  ///< Texels along the longer side at most; 0 for no limit.
+  double scale = 1;            ///< Of each side, above 0 up to 1.
+  std::int64_t max_side = 0;   ///< Texels along the longer side at most; 0 for no limit.
+  std::vector<double> scales;  ///< [#images] Of the sides of each at most (texel_density.h); or empty.
+  std::optional<std::int64_t> max_bytes;  ///< Of all image files together.
   ImageOutputOptions output;
   TexelMoves moves = TexelMoves::balanced;
   WarpOptions warp;
@@ -60,6 +63,7 @@ struct Shrunk {
   Model model;
   std::vector<ImageChange> images;  ///< [#images]
   std::vector<AtlasChange> atlases;
+  std::uint64_t bytes = 0;  ///< Of all image files together.
 };
 
 /// Makes the images of a model smaller, in texels and in bytes, atlas by atlas (atlas.h).
@@ -79,6 +83,10 @@ struct Shrunk {
 /// where they were and the image what it was. Images also stay, and are reported ("image-kept"), if no
 /// material uses them, if they are read in more than one way, and if they cannot be decoded (KTX2, damaged).
 /// Sides are at least 1.
+///
+/// With `max_bytes` sizes and qualities are chosen image by image so that least is lost (byte_budget.h), and
+/// again with less if moved texels make files larger; the other limits hold too. What cannot change takes
+/// what it takes: if all is at its least and still too large, that is reported ("bytes-missed").
 ///
 /// `field` [#meshes][#V] says how much is looked at, 0 … 1; empty for alike everywhere. One atlas after the
 /// other, each in parallel, all of its images in memory. Throws Error(usage) for options out of range and for

@@ -27,8 +27,10 @@ Texel looked_up(const Image8& image, double u, double v) {
   return sum;
 }
 
-float weight_of(TexelMeaning::Kind kind) {
-  switch (kind) {
+}  // namespace
+
+float loss_weight(const TexelMeaning& meaning) {
+  switch (meaning.kind) {
     case TexelMeaning::Kind::color: return 1;
     case TexelMeaning::Kind::normal: return 0.5f;
     case TexelMeaning::Kind::data: break;
@@ -36,14 +38,12 @@ float weight_of(TexelMeaning::Kind kind) {
   return 0.25f;
 }
 
-}  // namespace
-
 ImageF texel_losses(const Image8& before, const Image8& after, const TexelMeaning& meaning,
                     const TexelOrigins& places, const Context& context) {
   assert(before.channels == after.channels);
   const bool has_alpha = before.channels % 2 == 0;
   const int channels = has_alpha && !meaning.transparent ? before.channels - 1 : before.channels;
-  const float weight = weight_of(meaning.kind);
+  const float weight = loss_weight(meaning);
   ImageF result(places.width, places.height, 1, ColorEncoding::linear);
   parallel_for_or_throw(
       context, static_cast<std::size_t>(places.height), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -36,6 +37,21 @@ Json member(const Json& json, const char* name) {
   return json[name];
 }
 
+/// Only what of KHR_texture_transform is as it should be.
+TextureTransform transform_of(const Json& json) {
+  TextureTransform transform;
+  const auto read = [&](const char* key, Vec2d& to) {
+    const Json value = json.value(key, Json());
+    if (value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number())
+      to = {value[0].get<double>(), value[1].get<double>()};
+  };
+  read("offset", transform.offset);
+  read("scale", transform.scale);
+  if (const Json angle = json.value("rotation", Json()); angle.is_number())
+    transform.rotation_rad = angle.get<double>();
+  return transform;
+}
+
 class Reads {
  public:
   explicit Reads(const Model& model) : model_(model) {}
@@ -49,6 +65,7 @@ class Reads {
         read.meaning.alpha_cutoff = material.alpha_cutoff;
       read.uv_set = ref.uv_set;
       read.is_transformed = ref.transform && !(*ref.transform == TextureTransform{});
+      read.matrix = matrix(ref);
       add(ref.texture, read);
     }
   }
@@ -78,6 +95,7 @@ class Reads {
     read.uv_set = number(transform, "texCoord", number(info, "texCoord", 0));
     read.is_transformed =
         transform.contains("offset") || transform.contains("rotation") || transform.contains("scale");
+    read.matrix = matrix(transform_of(transform));
     add(number(info, "index", -1), read);
   }
 
@@ -104,6 +122,21 @@ std::vector<TextureRead> texture_reads(const Model& model, const Material& mater
   reads.add_roles(material);
   reads.add_extensions(material);
   return reads.take();
+}
+
+std::set<int> part_materials(const Model& model, const Part& part) {
+  std::set<int> materials{part.material};
+  const Json json = Json::parse(part.json, nullptr, false);
+  const auto mappings = Json::json_pointer("/extensions/KHR_materials_variants/mappings");
+  if (!json.is_object() || !json.contains(mappings) || !json[mappings].is_array()) return materials;
+  for (const Json& mapping : json[mappings]) {
+    const Json material = mapping.is_object() ? mapping.value("material", Json()) : Json();
+    if (!material.is_number_integer()) continue;
+    const auto m = material.get<std::int64_t>();
+    if (m >= 0 && m < static_cast<std::int64_t>(model.materials.size()))
+      materials.insert(static_cast<int>(m));
+  }
+  return materials;
 }
 
 }  // namespace fovea
