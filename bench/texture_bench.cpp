@@ -173,13 +173,24 @@ Model by_us(const Model& model, const Request& request) {
   return shrunk(simplified_by_us(model, request), request.scale, kWithoutLoss, TexelMoves::balanced).model;
 }
 
+Model by_us_rebaked(const Model& model, const Request& request, bool normals) {
+  ShrinkOptions options;
+  options.scale = request.scale;
+  options.output = kWithoutLoss;
+  options.rebake = {&model, normals};
+  Context context;
+  return shrink_textures(simplified_by_us(model, request), options, {}, context).model;
+}
+
 /// The first is what the others are held against.
 std::vector<Way> all_ways() {
   return {{"qem+resize", by_resizing},
           {"lee+relax", by_lee},
           {"yang", by_yang},
           {"ours+resize", by_us_resized},
-          {"ours", by_us}};
+          {"ours", by_us},
+          {"ours+rebake", [](const Model& m, const Request& r) { return by_us_rebaked(m, r, false); }},
+          {"ours+normals", [](const Model& m, const Request& r) { return by_us_rebaked(m, r, true); }}};
 }
 
 CompareOptions judge(const Request& request) {
