@@ -15,7 +15,7 @@
 
 namespace fovea {
 
-class SurfaceOrigin;
+class AtlasRebake;
 
 /// What a warp gives texels to.
 enum class WarpAim {
@@ -51,12 +51,12 @@ struct AtlasWarp {
 /// what loses least; ways that turn a triangle over, or that bring texels of two triangles to one place, are
 /// none. Without moving, images are `resized` from the filled ones.
 ///
-/// `origin`: where places of a simplified surface are on its original, for images that have one.
+/// `rebake`: where places of a simplified surface are on its original, for images that have one.
 ///
 /// `field` as for `texture_importance`. `measured`: only if it gains; else it goes as far as it can.
 /// Cost: that of the warp and of three bakes. Throws what `warp` throws.
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
-                     bool measured, Context& context, const SurfaceOrigin* origin = nullptr);
+                     bool measured, Context& context, const AtlasRebake* rebake = nullptr);
 
 }  // namespace fovea
