@@ -135,7 +135,7 @@ TEST(Rebake, MovesAndBakesAtOnce) {
   ShrinkOptions options = rebake_of(s.original);
   options.moves = TexelMoves::balanced;
   options.scale = 0.5;
-  options.output = {TextureOutput::jpeg, 30};
+  options.output.format = TextureOutput::webp;
   const Shrunk one = shrink(s.simplified, options), three = shrink(s.simplified, options, 3);
   EXPECT_EQ(one.images[0].after.width, 32) << one.images[0].kept_because;
   EXPECT_GT(one.atlases.at(0).rebaked_texels, 0.5);

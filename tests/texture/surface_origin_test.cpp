@@ -33,7 +33,7 @@ SurfaceOrigin origin_of(const Pair& pair) {
 TEST(SurfaceOrigins, LieAlongTheNormalOfTheSimplerSurface) {
   const Pair pair = bumpy();
   const SurfaceOrigin origin = origin_of(pair);
-  const TexelOrigins found = origin.origins(pair.simplified, origin.faces(), 50, 40, Context());
+  const TexelOrigins found = origin.origins(50, 40, Context());
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 50; ++x) {
       const std::size_t i = found.index(x, y);
@@ -134,12 +134,12 @@ TEST(SurfaceOrigins, HalvesThatShareTexelsGetTheMean) {
   };
   Pair pair{model(0), model(0.02f)};
   const SurfaceOrigin origin = origin_of(pair);
-  const TexelOrigins found = origin.origins(pair.simplified, origin.faces(), 100, 100, Context());
+  const TexelOrigins found = origin.origins(100, 100, Context());
   EXPECT_NEAR(static_cast<double>(found.texels[found.index(50, 50)].uv.x), 0.505 + 0.01, 1e-5);
   // Farther apart they keep what they had.
   Pair far{model(0), model(0.2f)};
   const SurfaceOrigin other = origin_of(far);
-  const TexelOrigins stay = other.origins(far.simplified, other.faces(), 100, 100, Context());
+  const TexelOrigins stay = other.origins(100, 100, Context());
   EXPECT_NEAR(static_cast<double>(stay.texels[stay.index(50, 50)].uv.x), 0.505, 1e-6);
 }
 

@@ -7,7 +7,7 @@
 
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
-#include "fovea/texture/surface_origin.h"
+#include "fovea/texture/rebake.h"
 #include "fovea/texture/tangent_turn.h"
 #include "fovea/texture/texel_loss.h"
 
@@ -151,11 +151,11 @@ ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
 class Warper {
  public:
   Warper(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
-         std::span<const VertexField> field, const SurfaceOrigin* origin, Context& context)
+         std::span<const VertexField> field, const AtlasRebake* rebake, Context& context)
       : model_(model),
         atlas_(atlas),
         images_(images),
-        origin_(origin),
+        rebake_(rebake),
         context_(context),
         from_(atlas_faces(model, atlas)),
         maps_(texture_importance(model, atlas, field, kMapSide, context)) {}
@@ -210,8 +210,8 @@ class Warper {
         origins = texel_origins(result.to, from_, turns, width, height, context_);
         slopes = texel_slopes(result.to, from_, width, height);
         if (conflicts(from_, result.to, *origins) > kMostConflicts) return std::nullopt;
-        if (origin_ != nullptr)
-          originals = origin_->origins(result.model, result.to, width, height, context_);
+        if (rebake_ != nullptr)
+          originals = rebake_->moved_origins(result.model, result.to, width, height, context_);
       }
       const Image8 large = image.original != nullptr
                                ? baked(*image.original, image.meaning, *originals, slopes, context_)
@@ -247,7 +247,7 @@ class Warper {
   const Model& model_;
   const Atlas& atlas_;
   std::span<const WarpedImage> images_;
-  const SurfaceOrigin* origin_;
+  const AtlasRebake* rebake_;
   Context& context_;
   std::vector<AtlasFace> from_;
   TextureImportance maps_;
@@ -258,8 +258,8 @@ class Warper {
 
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
-                     bool measured, Context& context, const SurfaceOrigin* origin) {
-  Warper warper(model, atlas, images, field, origin, context);
+                     bool measured, Context& context, const AtlasRebake* rebake) {
+  Warper warper(model, atlas, images, field, rebake, context);
   AtlasWarp best = warper.unmoved();
   best.model = model;
   const double plain_loss = best.loss;

@@ -16,7 +16,7 @@
 
 namespace fovea {
 
-class SurfaceOrigin;
+class AtlasRebake;
 
 /// What a warp gives texels to.
 enum class WarpAim {
@@ -54,12 +54,12 @@ struct AtlasWarp {
 /// goes until a tenth is gained over not moving, and what loses least is taken. If no warp is, images are
 /// `resized` from the filled ones.
 ///
-/// `origin`: where places of a simplified surface are on its original, for images that have one.
+/// `rebake`: where places of a simplified surface are on its original, for images that have one.
 ///
 /// `field` as for `texture_importance`. Cost: that of one bake, or as many as are tried. Throws what `warp`
 /// throws.
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
-                     bool measured, Context& context, const SurfaceOrigin* origin = nullptr);
+                     bool measured, Context& context, const AtlasRebake* rebake = nullptr);
 
 }  // namespace fovea

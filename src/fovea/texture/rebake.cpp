@@ -1,6 +1,7 @@
 #include "fovea/texture/rebake.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include "fovea/base/error.h"
@@ -16,6 +17,13 @@ namespace {
 constexpr std::uint8_t kBeyond = 2;
 /// Texels around what charts newly cover that are filled from there.
 constexpr int kMargin = 8;
+
+Vec2f center(const TexelOrigins& origins, int x, int y) {
+  return {(static_cast<float>(x) + 0.5f) / static_cast<float>(origins.width),
+          (static_cast<float>(y) + 0.5f) / static_cast<float>(origins.height)};
+}
+
+int texel(double at, int side) { return static_cast<int>(std::clamp(at * side, 0.0, side - 1.0)); }
 
 /// Which texels lie within a square around those that are set.
 std::vector<std::uint8_t> grown(const std::vector<std::uint8_t>& set, int width, int height) {
@@ -53,34 +61,62 @@ AtlasRebake::AtlasRebake(const Model& original, const Atlas& original_atlas, con
     : simplified_(simplified), origin_(original, original_atlas, simplified, atlas) {}
 
 const TexelOrigins& AtlasRebake::origins(int width, int height, const Context& context) {
-  if (origins_.width == width && origins_.height == height) return origins_;
-  origins_ = origin_.origins(simplified_, origin_.faces(), width, height, context);
+  const auto [at, is_new] = origins_.try_emplace({width, height});
+  TexelOrigins& found = at->second;
+  if (!is_new) return found;
+  found = origin_.origins(width, height, context);
   std::size_t covered = 0, moved = 0;
   const TexelOrigins own = texel_origins(origin_.faces(), origin_.faces(), {}, width, height, context);
   for (std::size_t i = 0; i < own.drawn.size(); ++i) {
     covered += own.drawn[i];
-    moved += own.drawn[i] != 0 && !(origins_.texels[i].uv == own.texels[i].uv);
+    moved += own.drawn[i] != 0 && !(found.texels[i].uv == own.texels[i].uv);
   }
   moved_ = covered > 0 ? static_cast<double>(moved) / static_cast<double>(covered) : 0;
-  keep_beyond(width, height, context);
-  return origins_;
+  keep_beyond(found, context);
+  return found;
 }
 
-void AtlasRebake::keep_beyond(int width, int height, const Context& context) {
+void AtlasRebake::keep_beyond(TexelOrigins& origins, const Context& context) const {
+  const int width = origins.width, height = origins.height;
   const std::vector<std::uint8_t> before = covered_texels(origin_.original_faces(), width, height, context);
   std::vector<std::uint8_t> is_new(before.size());
-  for (std::size_t i = 0; i < before.size(); ++i) is_new[i] = origins_.drawn[i] != 0 && before[i] == 0;
+  for (std::size_t i = 0; i < before.size(); ++i) is_new[i] = origins.drawn[i] != 0 && before[i] == 0;
   is_new = grown(is_new, width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const std::size_t i = origins_.index(x, y);
-      if (origins_.drawn[i] != 0 || (before[i] == 0 && is_new[i] != 0)) continue;
-      const Vec2f center{(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
-                         (static_cast<float>(y) + 0.5f) / static_cast<float>(height)};
-      origins_.texels[i] = {center, 0};
-      origins_.drawn[i] = kBeyond;
+      const std::size_t i = origins.index(x, y);
+      if (origins.drawn[i] != 0 || (before[i] == 0 && is_new[i] != 0)) continue;
+      origins.texels[i] = {center(origins, x, y), 0};
+      origins.drawn[i] = kBeyond;
     }
   }
+}
+
+TexelOrigins AtlasRebake::moved_origins(const Model& model, std::span<const AtlasFace> to, int width,
+                                        int height, const Context& context) const {
+  assert(!origins_.empty());
+  const TexelOrigins& unmoved = std::ranges::max_element(origins_, {}, [](const auto& entry) {
+                                  return entry.second.texels.size();
+                                })->second;
+  const TangentFrames frames(model, to);
+  return rasterized<TexelOrigin>(
+      to, width, height,
+      [&](std::uint32_t face, const std::array<double, 3>& weights) {
+        const Vec2d own = uv_at(origin_.faces()[face], weights);
+        const int x = texel(own.x, unmoved.width), y = texel(own.y, unmoved.height);
+        const std::size_t i = unmoved.index(x, y);
+        TexelOrigin result{{static_cast<float>(own.x), static_cast<float>(own.y)}, face};
+        const float way = turn(origin_.frames().at(face, weights), frames.at(face, weights));
+        result.turn = way;
+        if (unmoved.drawn[i] != 1) return result;
+        const TexelOrigin& there = unmoved.texels[i];
+        result.uv = result.uv + (there.uv - center(unmoved, x, y));
+        result.is_mirrored = there.is_mirrored;
+        // What turns after green has turned over turns the other way before.
+        result.turn = there.turn + (there.is_mirrored ? -way : way);
+        return result;
+      },
+      context);
 }
 
 Image8 AtlasRebake::baked(const Image8& image, const TexelMeaning& meaning, const Context& context) {
@@ -88,10 +124,11 @@ Image8 AtlasRebake::baked(const Image8& image, const TexelMeaning& meaning, cons
   fill_between(filled, origin_.original_faces(), context);
   const std::vector<UvSlopes> slopes =
       texel_slopes(origin_.faces(), origin_.faces(), image.width, image.height);
-  Image8 result = fovea::baked(filled, meaning, origins(image.width, image.height, context), slopes, context);
+  const TexelOrigins& from = origins(image.width, image.height, context);
+  Image8 result = fovea::baked(filled, meaning, from, slopes, context);
   const auto width = static_cast<std::size_t>(image.channels);
-  for (std::size_t i = 0; i < origins_.drawn.size(); ++i) {
-    if (origins_.drawn[i] == kBeyond) std::copy_n(&image.pixels[i * width], width, &result.pixels[i * width]);
+  for (std::size_t i = 0; i < from.drawn.size(); ++i) {
+    if (from.drawn[i] == kBeyond) std::copy_n(&image.pixels[i * width], width, &result.pixels[i * width]);
   }
   return result;
 }
@@ -108,16 +145,15 @@ Image8 AtlasRebake::baked_normals(const Image8* map, double scale, int width, in
 double AtlasRebake::likeness(const Image8& before, const Image8& after, const TexelMeaning& meaning,
                              const Context& context) {
   const auto width = static_cast<std::size_t>(after.channels);
-  const auto count = static_cast<std::int64_t>(origins(after.width, after.height, context).drawn.size());
-  const std::int64_t drawn = std::ranges::count_if(origins_.drawn, [](std::uint8_t d) { return d == 1; });
+  const std::vector<std::uint8_t>& is_drawn = origins(after.width, after.height, context).drawn;
+  const std::int64_t drawn = std::ranges::count(is_drawn, 1);
   // One row of what lies under triangles.
   Image8 was(static_cast<int>(drawn), 1, after.channels, after.encoding), is = was;
   std::size_t out = 0;
-  for (std::int64_t i = 0; i < count; ++i) {
-    const auto texel = static_cast<std::size_t>(i);
-    if (origins_.drawn[texel] != 1) continue;
-    std::copy_n(&before.pixels[texel * width], width, &was.pixels[out]);
-    std::copy_n(&after.pixels[texel * width], width, &is.pixels[out]);
+  for (std::size_t i = 0; i < is_drawn.size(); ++i) {
+    if (is_drawn[i] != 1) continue;
+    std::copy_n(&before.pixels[i * width], width, &was.pixels[out]);
+    std::copy_n(&after.pixels[i * width], width, &is.pixels[out]);
     out += width;
   }
   if (drawn == 0) return std::numeric_limits<double>::infinity();

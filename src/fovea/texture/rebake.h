@@ -1,5 +1,9 @@
 #pragma once
 
+#include <map>
+#include <span>
+#include <utility>
+
 #include "fovea/base/context.h"
 #include "fovea/model/image.h"
 #include "fovea/model/model.h"
@@ -31,6 +35,12 @@ class AtlasRebake {
   /// the original, null if it has none; `scale` is that of the material.
   Image8 baked_normals(const Image8* map, double scale, int width, int height, const Context& context);
 
+  /// Where the texels come from once the simpler surface's triangles have moved to `to`; `model` is the
+  /// simplified one with these coordinates. By what was found for the largest image baked so far, to its
+  /// nearest texel. O(#texels), parallel. Throws Error(cancelled).
+  TexelOrigins moved_origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
+                             const Context& context) const;
+
   /// How near the old image is to the new one where triangles lie: `encoding_psnr`; infinite if nothing
   /// changed.
   double likeness(const Image8& before, const Image8& after, const TexelMeaning& meaning,
@@ -41,11 +51,11 @@ class AtlasRebake {
  private:
   const TexelOrigins& origins(int width, int height, const Context& context);
   /// What no triangle covers, here or there, stays as it was: it goes on beyond charts as it was made to.
-  void keep_beyond(int width, int height, const Context& context);
+  void keep_beyond(TexelOrigins& origins, const Context& context) const;
 
   const Model& simplified_;
   SurfaceOrigin origin_;
-  TexelOrigins origins_;  // of the last size
+  std::map<std::pair<int, int>, TexelOrigins> origins_;  // by size
   double moved_ = 0;
 };
 

@@ -258,8 +258,7 @@ class Shrinker {
         if (rebake_ != nullptr && !bakes_normals(atlas.images[i])) wanted.back().original = &originals[i];
       }
       AtlasWarp warp = warp_atlas(result_.model, atlas, wanted, field_, aim_of(options_.moves), options_.warp,
-                                  options_.moves == TexelMoves::balanced, context_,
-                                  rebake_ != nullptr ? &rebake_->origin() : nullptr);
+                                  options_.moves == TexelMoves::balanced, context_, rebake_.get());
       change.rounds = warp.warp.rounds;
       change.last_move = warp.warp.last_move;
       change.settled = warp.warp.settled;

@@ -73,11 +73,6 @@ double longest_edge(const std::array<Vec3d, 3>& p) {
   return std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])});
 }
 
-/// By how much normal maps turn from one frame to the other: from the old tangent towards the old bitangent.
-float turn(const TangentFrame& from, const TangentFrame& to) {
-  return static_cast<float>(std::atan2(dot(to.tangent, from.bitangent), dot(to.tangent, from.tangent)));
-}
-
 bool are_mirrored(const TangentFrame& a, const TangentFrame& b) {
   const auto side = [](const TangentFrame& f) { return dot(cross(f.normal, f.tangent), f.bitangent); };
   return side(a) * side(b) < 0;
@@ -133,21 +128,18 @@ std::optional<SurfaceOrigin::Place> SurfaceOrigin::place(std::uint32_t face,
   return Place{target.faces[hit->triangle], hit->weights};
 }
 
-TexelOrigin SurfaceOrigin::origin(std::uint32_t face, const std::array<double, 3>& weights,
-                                  const TangentFrame& frame) const {
+TexelOrigin SurfaceOrigin::origin(std::uint32_t face, const std::array<double, 3>& weights) const {
+  const TangentFrame frame = frames_.at(face, weights);
   const std::optional<Place> found = place(face, weights);
   const Vec2d at = found ? uv_at(original_faces_[found->face], found->weights) : uv_at(faces_[face], weights);
-  const TangentFrame from =
-      found ? original_frames_.at(found->face, found->weights) : frames_.at(face, weights);
+  const TangentFrame from = found ? original_frames_.at(found->face, found->weights) : frame;
   return {{static_cast<float>(at.x), static_cast<float>(at.y)},
           face,
           turn(from, frame),
           are_mirrored(from, frame)};
 }
 
-TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
-                                    const Context& context) const {
-  const TangentFrames frames(model, to);
+TexelOrigins SurfaceOrigin::origins(int width, int height, const Context& context) const {
   TexelOrigins result{width, height, {}, {}};
   result.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   result.drawn.resize(result.texels.size(), 0);
@@ -159,7 +151,7 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
   const auto add = [&](std::uint32_t face, const std::array<double, 3>& weights, std::size_t texel) {
     std::uint8_t& count = counts[texel];
     if (count == kDisagree) return;
-    const TexelOrigin next = origin(face, weights, frames.at(face, weights));
+    const TexelOrigin next = origin(face, weights);
     TexelOrigin& mean = result.texels[texel];
     if (count == 0) mean = next;
     if (distance(mean.uv, next.uv) > kAgreeing || mean.is_mirrored != next.is_mirrored ||
@@ -174,7 +166,7 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     mean.uv = mean.uv + (next.uv - mean.uv) * part;
     mean.turn += std::remainder(next.turn - mean.turn, 2 * std::numbers::pi_v<float>) * part;
   };
-  for_atlas_texels(to, width, height, add, context);
+  for_atlas_texels(faces_, width, height, add, context);
   struct Nothing {};
   const AtlasRaster<Nothing> covered = rasterized<Nothing>(
       original_faces_, width, height, [](std::uint32_t, const std::array<double, 3>&) { return Nothing{}; },
@@ -194,22 +186,20 @@ TexelOrigins SurfaceOrigin::origins(const Model& model, std::span<const AtlasFac
     if (is_still) origin.uv = at;
     if (counts[texel] > 1 && !is_covered(origin.uv)) origin = {at, face};
   };
-  for_atlas_texels(to, width, height, settle, context);
+  for_atlas_texels(faces_, width, height, settle, context);
   const auto add_edge = [&](std::uint32_t face, const std::array<double, 3>& weights, std::size_t texel) {
     if (counts[texel] != 0) return;
     counts[texel] = 1;
     TexelOrigin& beside = result.texels[texel];
-    beside = origin(face, weights, frames.at(face, weights));
+    beside = origin(face, weights);
     const Vec2f at = own(face, weights), way = beside.uv - at;
     if (std::hypot(way.x * size.x, way.y * size.y) >= kStill) return;
     // The texel's own centre, from a place that lies beside it.
-    const Vec2d here = uv_at(to[face], weights);
     const auto x = static_cast<float>(texel % static_cast<std::size_t>(width)),
                y = static_cast<float>(texel / static_cast<std::size_t>(width));
-    beside.uv = at + Vec2f{(x + 0.5f) / size.x - static_cast<float>(here.x),
-                           (y + 0.5f) / size.y - static_cast<float>(here.y)};
+    beside.uv = {(x + 0.5f) / size.x, (y + 0.5f) / size.y};
   };
-  for_edge_texels(to, width, height, add_edge);
+  for_edge_texels(faces_, width, height, add_edge);
   for (std::uint8_t& count : counts) count = count != 0 ? 1 : 0;
   return result;
 }

@@ -39,21 +39,19 @@ class SurfaceOrigin {
   std::span<const AtlasFace> original_faces() const { return original_faces_; }
   std::span<const AtlasFace> faces() const { return faces_; }
   const TangentFrames& original_frames() const { return original_frames_; }
+  const TangentFrames& frames() const { return frames_; }
 
   /// Thread-safe. About O(log #F).
   std::optional<Place> place(std::uint32_t face, const std::array<double, 3>& weights) const;
 
-  /// Where the texels of a new image come from in the original's, with the simpler surface's triangles at
-  /// `to` in the new one; `model` is the simplified one with coordinates at `to`. Texels stay where they are
+  /// Where the texels of a new image come from in the original's. Texels stay where they are
   /// by their own coordinates if there is no place, and if it is less than half a texel away. Where several
   /// triangles lie (halves that share their texels, mostly) they get the mean of what these ask for, or stay
   /// if that is far apart. O(#texels log #F), parallel. Throws Error(cancelled).
-  TexelOrigins origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
-                       const Context& context) const;
+  TexelOrigins origins(int width, int height, const Context& context) const;
 
  private:
-  TexelOrigin origin(std::uint32_t face, const std::array<double, 3>& weights,
-                     const TangentFrame& frame) const;
+  TexelOrigin origin(std::uint32_t face, const std::array<double, 3>& weights) const;
 
   /// The triangles of one mesh that may be found.
   struct Target {

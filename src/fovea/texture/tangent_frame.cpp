@@ -24,6 +24,10 @@ Vec3f vector(const float* values) { return {values[0], values[1], values[2]}; }
 
 }  // namespace
 
+float turn(const TangentFrame& from, const TangentFrame& to) {
+  return static_cast<float>(std::atan2(dot(to.tangent, from.bitangent), dot(to.tangent, from.tangent)));
+}
+
 TangentFrames::TangentFrames(const Model& model, std::span<const AtlasFace> faces) : corners_(faces.size()) {
   add_normals(model, faces);
   add_tangents(model, faces);

@@ -24,6 +24,10 @@ struct TangentFrame {
   }
 };
 
+/// By how much normal maps turn from one frame to the other: the angle from the old tangent towards the old
+/// bitangent, in radians.
+float turn(const TangentFrame& from, const TangentFrame& to);
+
 /// The frames of an atlas's triangles in the pose at rest, in the space of their meshes: of the meshes' own
 /// normals and tangents; without normals triangles are flat, without tangents these follow the coordinates,
 /// averaged by area over triangles that share a value, as tangent_turn.h has them.
