@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -148,6 +149,22 @@ TEST(Warp, NoCellFoldsAndTheBorderHolds) {
       }
     }
   }
+}
+
+TEST(Warp, JoinedBordersSlideAlike) {
+  WarpOptions options;
+  const Warp apart = warped(noise(64, 48), options);
+  options.joined_u = options.joined_v = true;
+  const Warp joined = warped(noise(64, 48), options);
+  EXPECT_GT(joined.grid.smallest_corner(), 0);
+  double most = 0;
+  for (int j = 0; j <= joined.grid.rows(); ++j) {
+    EXPECT_NEAR(joined.grid.node(0, j).y, joined.grid.node(joined.grid.columns(), j).y, 1e-12);
+    most = std::max(most, std::abs(apart.grid.node(0, j).y - apart.grid.node(apart.grid.columns(), j).y));
+  }
+  for (int i = 0; i <= joined.grid.columns(); ++i)
+    EXPECT_NEAR(joined.grid.node(i, 0).x, joined.grid.node(i, joined.grid.rows()).x, 1e-12);
+  EXPECT_GT(most, 1e-4);  // which they would not do by themselves
 }
 
 TEST(Warp, ThreadsDoNotMatter) {

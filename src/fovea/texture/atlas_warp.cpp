@@ -164,8 +164,8 @@ class Warper {
     AtlasWarp result;
     result.to = from_;
     for (const WarpedImage& image : images_)
-      result.images.push_back(resized(*image.image, image.width, image.height, image.meaning, Wrap::clamp,
-                                      Wrap::clamp, context_));
+      result.images.push_back(resized(*image.image, image.width, image.height, image.meaning, image.wrap_u,
+                                      image.wrap_v, context_));
     places_ = places(from_);
     maps_.detail = ImageF(maps_.coverage.width, maps_.coverage.height, 1, ColorEncoding::linear);
     for (std::size_t i = 0; i < images_.size(); ++i) {
@@ -217,7 +217,7 @@ class Warper {
                                ? baked(*image.original, image.meaning, *originals, slopes, context_)
                                : baked(*image.image, image.meaning, *origins, slopes, context_);
       result.images.push_back(
-          resized(large, image.width, image.height, image.meaning, Wrap::clamp, Wrap::clamp, context_));
+          resized(large, image.width, image.height, image.meaning, image.wrap_u, image.wrap_v, context_));
     }
     const TexelOrigins there = places(result.to);
     for (std::size_t i = 0; i < images_.size(); ++i) result.loss += mean(losses(i, result.images[i], there));
@@ -267,6 +267,10 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
   ImageF importance = warper.importance(aim);
   WarpOptions asked = options;
   if (aim == WarpAim::frequency) asked.rigidity = 0;
+  for (const WarpedImage& image : images) {
+    asked.joined_u = asked.joined_u || image.wrap_u == Wrap::repeat;
+    asked.joined_v = asked.joined_v || image.wrap_v == Wrap::repeat;
+  }
   for (int attempt = 0; attempt < kAttempts && asked.floor <= 1; ++attempt, asked.floor *= 2) {
     std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
     if (!next || (measured && next->loss >= best.loss)) continue;

@@ -30,6 +30,7 @@ struct WarpedImage {
   const Image8* image = nullptr;  ///< What no triangle covers filled (`fill_between`).
   TexelMeaning meaning;
   int width = 0, height = 0;  ///< Wanted.
+  Wrap wrap_u = Wrap::clamp, wrap_v = Wrap::clamp;
   /// What `image` was baked from for a simpler surface, to be baked from again; null if it was not.
   const Image8* original = nullptr;
 };

@@ -133,13 +133,13 @@ TextureImportance texture_importance(const Model& model, const Atlas& atlas,
     uv_area += shapes.back().uv_area;
   }
   const std::vector<std::array<float, 3>> distortion = distortions(faces, shapes);
-  const auto [width, height] = map_size(model, atlas, longest_side);
+  const std::array<int, 2> size = map_size(model, atlas, longest_side);
   const auto mixed = [](const std::array<double, 3>& weights, auto&& corner) {
     return static_cast<float>(weights[0] * corner(std::size_t{0}) + weights[1] * corner(std::size_t{1}) +
                               weights[2] * corner(std::size_t{2}));
   };
   const auto drawn = [&](auto&& value) {
-    return image_of(rasterized<float>(faces, width, height, value, context));
+    return image_of(rasterized<float>(faces, size[0], size[1], value, context));
   };
   using Weights = std::array<double, 3>;
   TextureImportance maps;

@@ -29,6 +29,10 @@ namespace {
 /// Most texels of an atlas's images together whose texels move: all are in memory at once.
 constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 
+/// Texels along a line that have to become one for texels to move: of less, pictures show little but the
+/// smaller copies of a texture, which a warp only mixes.
+constexpr int kLeastReduction = 4;
+
 /// How often texels are moved in search of images that take no more than they may, and by how much more
 /// than they are over they get less.
 constexpr int kMovingRounds = 3;
@@ -237,6 +241,10 @@ class Shrinker {
   std::string move(const Atlas& atlas, AtlasChange& change) {
     if (std::ranges::none_of(atlas.images, [&](int image) { return is_smaller(image); }))
       return "no image gets fewer texels";
+    if (options_.moves == TexelMoves::balanced && std::ranges::none_of(atlas.images, [&](int image) {
+          return wanted(image).width * kLeastReduction <= before(image).width;
+        }))
+      return "its images keep more than a quarter of their sides";
     try {
       const std::vector<AtlasFace> faces = atlas_faces(result_.model, atlas);
       std::vector<Image8> originals, pictures;
@@ -253,9 +261,10 @@ class Shrinker {
       std::vector<WarpedImage> wanted;
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         const WantedImage& size = this->wanted(atlas.images[i]);
-        wanted.push_back(
-            {&pictures[i], uses_[index(atlas.images[i])].meaning, size.width, size.height, nullptr});
-        if (rebake_ != nullptr && !bakes_normals(atlas.images[i])) wanted.back().original = &originals[i];
+        const ImageUse& use = uses_[index(atlas.images[i])];
+        WarpedImage& image = wanted.emplace_back(
+            WarpedImage{&pictures[i], use.meaning, size.width, size.height, use.wrap_u, use.wrap_v});
+        if (rebake_ != nullptr && !bakes_normals(atlas.images[i])) image.original = &originals[i];
       }
       AtlasWarp warp = warp_atlas(result_.model, atlas, wanted, field_, aim_of(options_.moves), options_.warp,
                                   options_.moves == TexelMoves::balanced, context_, rebake_.get());

@@ -19,7 +19,7 @@ namespace fovea {
 /// How texels may move within images that become smaller.
 enum class TexelMoves {
   none,
-  balanced,   ///< As WarpAim::balanced, and only where it gains.
+  balanced,   ///< As WarpAim::balanced, where it gains and a side becomes a quarter or less.
   saliency,   ///< As WarpAim::saliency, wherever it folds nothing.
   frequency,  ///< As WarpAim::frequency, wherever it folds nothing.
 };

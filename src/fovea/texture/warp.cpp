@@ -103,6 +103,7 @@ class Moving {
       const Vec2d asked = on_border(i, j, asked_for(i, j));
       next_[index(i, j)] = relaxed_[index(i, j)] * (1 - options_.rigidity) + asked * options_.rigidity;
     });
+    join();
     unfold(context);
     double farthest = 0;
     for (std::size_t n = 0; n < at_.size(); ++n)
@@ -142,6 +143,21 @@ class Moving {
     parallel_for(context, static_cast<std::size_t>(rows_), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j)
         for (int i = 0; i < columns_; ++i) body(i, static_cast<int>(j));
+    });
+  }
+
+  /// Calls `visit(a, b)` for nodes across from each other on borders that are joined, and whether they slide
+  /// up and down.
+  template <class Visit>
+  void over_joined(const Visit& visit) const {
+    for (int j = 0; options_.joined_u && j <= rows_; ++j) visit(index(0, j), index(columns_, j), true);
+    for (int i = 0; options_.joined_v && i <= columns_; ++i) visit(index(i, 0), index(i, rows_), false);
+  }
+
+  void join() {
+    over_joined([&](std::size_t a, std::size_t b, bool vertical) {
+      double &x = vertical ? next_[a].y : next_[a].x, &y = vertical ? next_[b].y : next_[b].x;
+      x = y = (x + y) / 2;
     });
   }
 
@@ -250,6 +266,7 @@ class Moving {
         }
       }
       if (!any) return;
+      over_joined([&](std::size_t a, std::size_t b, bool) { halve[a] = halve[b] = halve[a] | halve[b]; });
       const double part = n < kHalvings ? 0.5 : 0;
       over_nodes(context, [&](int i, int j) {
         const std::size_t at = index(i, j);

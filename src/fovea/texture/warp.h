@@ -64,6 +64,9 @@ struct WarpOptions {
   double floor = 0.05;
   std::int64_t rounds = 100;  ///< Of each level, at most.
   double tolerance = 1e-3;    ///< A level is settled when no node moves farther, in cells.
+  /// What lies beyond the right border is what lies at the left one, and so above and below (an image that
+  /// repeats): nodes across from each other slide alike. No options for users; images say so.
+  bool joined_u = false, joined_v = false;
 };
 OptionList describe(WarpOptions& options);
 
