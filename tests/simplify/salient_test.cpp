@@ -161,7 +161,8 @@ TEST(Salient, AModelOfNothing) {
   EXPECT_TRUE(importance(test::model_of(test::empty_mesh()), {VertexField()})[0].empty());
   Model hidden = test::model_of(test::cube());
   hidden.scenes[0].nodes.clear();
-  for (const float w : importance(hidden, random_saliency(hidden))[0].values()) EXPECT_TRUE(std::isfinite(w));
+  const Importance found = importance(hidden, random_saliency(hidden));
+  for (const float w : found[0].values()) EXPECT_TRUE(std::isfinite(w));
 }
 
 TEST(Salient, OtherSizesAreRefused) {
