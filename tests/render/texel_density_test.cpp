@@ -94,12 +94,12 @@ TEST(TexelDensity, IsTheSameForAnyNumberOfThreads) {
 
 TEST(NeededScales, KeepATexelToThePixel) {
   std::vector<TexelDensity> densities(4);
-  for (int i = 0; i < 1000; ++i) densities[0].add(i < 30 ? 16 : 512);
-  for (int i = 0; i < 1000; ++i) densities[1].add(i < 80 ? 16 : 512);
+  for (int i = 0; i < 1000; ++i) densities[0].add(i < 80 ? 16 : 512);
+  for (int i = 0; i < 1000; ++i) densities[1].add(i < 120 ? 16 : 512);
   densities[0].is_used = densities[1].is_used = densities[2].is_used = true;
   const std::vector<double> scales = needed_scales(densities, 128);
-  EXPECT_DOUBLE_EQ(scales[0], 0.25);  // 3 % of the pixels may be coarser
-  EXPECT_DOUBLE_EQ(scales[1], 1);     // 8 % may not, and images are never enlarged
+  EXPECT_DOUBLE_EQ(scales[0], 0.25);  // 8 % of the pixels may be coarser
+  EXPECT_DOUBLE_EQ(scales[1], 1);     // 12 % may not, and images are never enlarged
   EXPECT_DOUBLE_EQ(scales[2], kUnseenScale);
   EXPECT_DOUBLE_EQ(scales[3], 1);
 }

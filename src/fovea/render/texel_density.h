@@ -40,7 +40,7 @@ std::vector<TexelDensity> texel_densities(const Model& model, const RenderScene&
                                           std::span<const View> views, int size, const Context& context);
 
 /// The part of the pixels of a picture that may have less than a texel to a pixel.
-inline constexpr double kCoarsePixels = 0.05;
+inline constexpr double kCoarsePixels = 0.1;
 /// The scale of the sides of images that no view sees.
 inline constexpr double kUnseenScale = 1.0 / 32;
 
