@@ -142,4 +142,11 @@ void check_input(const std::string& input) {
   if (!fs::exists(input, ignored)) throw Error(ErrorKind::input, "no such file", input);
 }
 
+int target_code(Session& session, bool reached, bool allow_miss) {
+  constexpr int kTargetMissed = 8;
+  if (reached || allow_miss) return 0;
+  session.say("target not reached (exit code 8; --allow-miss accepts it)");
+  return kTargetMissed;
+}
+
 }  // namespace fovea::cli

@@ -121,4 +121,7 @@ void check_output(const std::string& output, const std::string& example,
 /// An input path as given; Error(usage) for "-", Error(input) if it is missing or a folder.
 void check_input(const std::string& input);
 
+/// The exit code of a run with a target: 8, with a word, if it was missed and that is not allowed.
+int target_code(Session& session, bool reached, bool allow_miss);
+
 }  // namespace fovea::cli

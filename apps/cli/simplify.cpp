@@ -20,8 +20,6 @@ namespace fovea::cli {
 
 namespace {
 
-constexpr int kTargetMissed = 8;
-
 /// Where saliency comes from; presets in the order of SaliencyPreset.
 enum class SaliencySource { none, chosen, fovea, yang, lee, munaretti };
 
@@ -227,9 +225,7 @@ class Simplify : public Verb {
                                       printable(output_), comparison_text(before, after),
                                       result_text(result, options_), chosen_, texture_text_,
                                       session.spent_text()));
-    if (reached) return 0;
-    if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");
-    return allow_miss_ ? 0 : kTargetMissed;
+    return target_code(session, reached, allow_miss_);
   }
 
   std::string input_;

@@ -26,7 +26,6 @@ namespace fovea::cli {
 
 namespace {
 
-constexpr int kTargetMissed = 8;
 /// Pixels along the pictures in which texels are counted.
 constexpr int kDensitySize = 256;
 
@@ -222,9 +221,7 @@ class TextureVerb : public Verb {
                                       comparison_text(before, after),
                                       tell_shrunk(session, result, false, per_pixel), session.spent_text()));
     session.report["reached"] = reached(result);
-    if (reached(result)) return 0;
-    if (!allow_miss_) session.say("target not reached (exit code 8; --allow-miss accepts it)");
-    return allow_miss_ ? 0 : kTargetMissed;
+    return target_code(session, reached(result), allow_miss_);
   }
 
   std::string input_;

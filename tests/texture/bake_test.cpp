@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "fovea/texture/tangent_turn.h"
+#include "fovea/texture/tangent_frame.h"
 #include "fovea/texture/texel_loss.h"
 #include "support/meshes.h"
 #include "support/pictures.h"
@@ -72,6 +72,8 @@ TEST(Baked, NormalsTurnWithTheTangentsTheyAreSeenFrom) {
   AttributeLayer tangents;
   tangents.semantic = Semantic::tangent;
   tangents.width = 4;
+  tangents.values = {1, 0, 0, 1};
+  tangents.corner_value.assign(std::size_t{3} * from.size(), ValueId{0});
   model.meshes[0].surface.layers.push_back(tangents);
   EXPECT_EQ(bake(image, Kind::normal, model, from, to, 8, 8).at(3, 3)[0], 255);
 }

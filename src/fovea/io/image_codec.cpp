@@ -156,7 +156,7 @@ std::vector<std::uint8_t> encode_png(const Image8& image) {
 std::vector<std::uint8_t> encode_jpeg(const Image8& image, int quality) {
   check_image(image, 4);
   check_quality(quality, 100);
-  if (image.channels == 2 || image.channels == 4) {
+  if (image.has_alpha()) {
     throw Error(ErrorKind::usage, "JPEG has no alpha", {}, "encode as PNG or WebP");
   }
   return compress_jpeg(image, quality);

@@ -43,7 +43,7 @@ WebPConfig make_config(int quality) {
 }
 
 void import_pixels(WebPPicture& picture, const Image8& image) {
-  const bool has_alpha = image.channels == 2 || image.channels == 4;
+  const bool has_alpha = image.has_alpha();
   const std::vector<std::uint8_t> colors =
       image.channels < 3 ? with_colors(image) : std::vector<std::uint8_t>{};
   const std::uint8_t* pixels = image.channels < 3 ? colors.data() : image.pixels.data();

@@ -27,6 +27,9 @@ struct Image {
         channels(c),
         encoding(e),
         pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c)) {}
+  bool has_alpha() const { return channels == 2 || channels == 4; }
+  /// Channels without alpha.
+  int color_channels() const { return has_alpha() ? channels - 1 : channels; }
   T* at(int x, int y) { return pixels.data() + offset(x, y); }
   const T* at(int x, int y) const { return pixels.data() + offset(x, y); }
 

@@ -84,6 +84,16 @@ std::vector<std::vector<Mat4>> mesh_instances(const Model& model) {
   return result;
 }
 
+std::vector<double> largest_scales(const Model& model) {
+  std::vector<double> scales;
+  for (const std::vector<Mat4>& instances : mesh_instances(model)) {
+    double largest = 0;
+    for (const Mat4& world : instances) largest = std::max(largest, std::cbrt(std::abs(determinant3(world))));
+    scales.push_back(largest);
+  }
+  return scales;
+}
+
 Box bounds(const Model& model) {
   Box box;
   const auto instances = mesh_instances(model);

@@ -130,6 +130,9 @@ std::vector<bool> shown_nodes(const Model& model);
 /// skinned instance is placed by its first joint (joint · inverse bind): glTF ignores the node's own.
 std::vector<std::vector<Mat4>> mesh_instances(const Model& model);
 
+/// For each mesh the largest factor on lengths with which an instance shows it; 0 if none does.
+std::vector<double> largest_scales(const Model& model);
+
 /// Bounding box of all instances of all meshes in their rest pose, in world space.
 Box bounds(const Model& model);
 

@@ -47,12 +47,8 @@ void check_request(const Model& model, SimplifyOptions options, const Importance
 
 /// The largest scale at which each mesh is shown; 1 if it is not.
 std::vector<double> mesh_scales(const Model& model) {
-  std::vector<double> scales;
-  for (const auto& instances : mesh_instances(model)) {
-    double largest = 0;
-    for (const Mat4& m : instances) largest = std::max(largest, std::cbrt(std::abs(determinant3(m))));
-    scales.push_back(largest > 0 ? largest : 1.0);
-  }
+  std::vector<double> scales = largest_scales(model);
+  for (double& scale : scales) scale = scale > 0 ? scale : 1.0;
   return scales;
 }
 

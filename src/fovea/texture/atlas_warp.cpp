@@ -8,7 +8,7 @@
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
 #include "fovea/texture/rebake.h"
-#include "fovea/texture/tangent_turn.h"
+#include "fovea/texture/tangent_frame.h"
 #include "fovea/texture/texel_loss.h"
 
 namespace fovea {

@@ -63,7 +63,7 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
                               if (is_normal) value = turned(value, origin);
                               std::uint8_t* out = result.at(x, static_cast<int>(y));
                               const float colors[] = {value.r, value.g, value.b};
-                              const int alpha = image.channels % 2 == 0 ? image.channels - 1 : image.channels;
+                              const int alpha = image.color_channels();
                               for (int k = 0; k < alpha; ++k)
                                 out[k] = is_color ? to_display(colors[k]) : byte(colors[k]);
                               if (alpha < image.channels) out[alpha] = byte(value.a);

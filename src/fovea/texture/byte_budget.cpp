@@ -207,7 +207,9 @@ std::vector<WantedImage> ByteBudget::choose(double bytes) {
       best = numbers;
       break;
     }
-    if (round >= kRounds) goal *= kHaste * std::min(1.0, (bytes - kept_bytes_) / (sum - kept_bytes_));
+    // With a goal below 0 the least is tried already.
+    if (round >= kRounds && goal > 0)
+      goal *= kHaste * std::min(1.0, (bytes - kept_bytes_) / (sum - kept_bytes_));
   }
   return wanted(*best);
 }

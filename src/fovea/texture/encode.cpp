@@ -97,8 +97,8 @@ bool is_even(const Image8& image, const Square& square) {
 Image8 with_channels(const Image8& image, int channels) {
   if (image.channels == channels) return image;
   Image8 result(image.width, image.height, channels, image.encoding);
-  const bool alpha = channels == 2 || channels == 4, had_alpha = image.channels == 2 || image.channels == 4;
-  const int colors = alpha ? channels - 1 : channels, had = had_alpha ? image.channels - 1 : image.channels;
+  const bool alpha = result.has_alpha(), had_alpha = image.has_alpha();
+  const int colors = result.color_channels(), had = image.color_channels();
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const std::uint8_t* from = image.at(x, y);

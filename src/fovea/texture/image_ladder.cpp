@@ -44,7 +44,7 @@ double best_with_loss(const Samples& samples) {
 
 SizeSamples samples_of(const Image8& image, TextureFormat format, Content content, double psnr_db) {
   SizeSamples samples{encoding_samples(image, format, content), {}};
-  if (format == TextureFormat::webp && image.channels % 2 == 1 && best_with_loss(samples.asked) < psnr_db)
+  if (format == TextureFormat::webp && !image.has_alpha() && best_with_loss(samples.asked) < psnr_db)
     samples.instead = encoding_samples(image, TextureFormat::jpeg, content);
   return samples;
 }
@@ -149,8 +149,7 @@ std::vector<Size> measured_sizes(const Image8& image, const ImageUse& use, Textu
 std::vector<LadderStep> image_steps(const Image8& image, const ImageUse& use, TextureFormat format,
                                     double psnr_db, int half_octaves, const ImageF& weights,
                                     const Context& context) {
-  const bool alpha_is_hidden = image.channels % 2 == 0 && !use.meaning.transparent;
-  const double channels = alpha_is_hidden ? image.channels - 1 : image.channels;
+  const double channels = use.meaning.transparent ? image.channels : image.color_channels();
   const double encoding_weight = static_cast<double>(loss_weight(use.meaning)) * channels / (255.0 * 255.0);
   std::vector<LadderStep> steps;
   for (const Size& size : measured_sizes(image, use, format, psnr_db, half_octaves, weights, context)) {

@@ -14,8 +14,6 @@ namespace {
 /// As near as no encoder is asked to be: without loss.
 constexpr double kMostPsnr = 99;
 
-bool has_alpha(const Image8& image) { return image.channels == 2 || image.channels == 4; }
-
 bool is_opaque(const Image8& image) {
   const auto step = static_cast<std::size_t>(image.channels);
   for (std::size_t i = step - 1; i < image.pixels.size(); i += step) {
@@ -45,7 +43,7 @@ TextureFormat format_of(const std::string& type, TextureOutput wanted, bool alph
 /// As asked for, or JPEG instead of WebP.
 ImageOutput encode(const Image8& image, TextureFormat format, double psnr_db, Content content) {
   ImageOutput result{encode_to_psnr(image, format, psnr_db, content), format};
-  if (format != TextureFormat::webp || result.texture.quality > 0 || has_alpha(image) ||
+  if (format != TextureFormat::webp || result.texture.quality > 0 || image.has_alpha() ||
       !std::isfinite(psnr_db))
     return result;
   EncodedTexture jpeg = encode_to_psnr(image, TextureFormat::jpeg, psnr_db, content);
@@ -86,7 +84,7 @@ ImageChange::State state_of(const EncodedImage& image) {
 
 TextureFormat output_format(const Image8& image, const std::string& mime_type,
                             const ImageOutputOptions& options) {
-  return format_of(mime_type, options.format, has_alpha(image));
+  return format_of(mime_type, options.format, image.has_alpha());
 }
 
 Content content_of(const ImageUse& use) {
@@ -98,8 +96,8 @@ bool keeps_format(const std::string& type, const ImageOutputOptions& options) {
 }
 
 Image8 without_idle_alpha(Image8 image, const ImageUse& use) {
-  return has_alpha(image) && (!use.alpha_counts || is_opaque(image)) ? without_alpha(image)
-                                                                     : std::move(image);
+  return image.has_alpha() && (!use.alpha_counts || is_opaque(image)) ? without_alpha(image)
+                                                                      : std::move(image);
 }
 
 std::optional<ImageOutput> encode_output(const Image8& image, const ImageUse& use,

@@ -35,6 +35,7 @@ struct WantedImage {
   double psnr_db = 0;  ///< Of the encoding.
   bool stays = false;  ///< Its file does, unless texels move.
   SizeReason reason = SizeReason::none;
+  friend bool operator==(const WantedImage&, const WantedImage&) = default;
 };
 
 /// One image before and after.

@@ -29,17 +29,6 @@ std::array<int, 2> map_size(const Model& model, const Atlas& atlas, int longest_
   return {side(width), side(height)};
 }
 
-/// How large each mesh is shown at most, as a factor on its lengths; 0 if it is not shown.
-std::vector<double> largest_scales(const Model& model) {
-  std::vector<double> scales;
-  for (const std::vector<Mat4>& instances : mesh_instances(model)) {
-    double largest = 0;
-    for (const Mat4& world : instances) largest = std::max(largest, std::cbrt(std::abs(determinant3(world))));
-    scales.push_back(largest);
-  }
-  return scales;
-}
-
 /// A triangle on the surface and in the texture.
 struct FaceShape {
   double area = 0, uv_area = 0;

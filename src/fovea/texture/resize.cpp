@@ -64,16 +64,14 @@ class Filter {
   std::vector<Tap> taps_;
 };
 
-bool has_alpha(int channels) { return channels == 2 || channels == 4; }
-
 /// Between stored bytes and numbers that can be mixed.
 class Mixing {
  public:
-  Mixing(const TexelMeaning& meaning, int channels)
-      : colors_(has_alpha(channels) ? channels - 1 : channels),
-        channels_(channels),
-        weighted_(meaning.transparent && has_alpha(channels)),
-        normal_(meaning.kind == TexelMeaning::Kind::normal && channels >= 3),
+  Mixing(const TexelMeaning& meaning, const Image8& image)
+      : colors_(image.color_channels()),
+        channels_(image.channels),
+        weighted_(meaning.transparent && image.has_alpha()),
+        normal_(meaning.kind == TexelMeaning::Kind::normal && image.channels >= 3),
         color_(meaning.kind == TexelMeaning::Kind::color) {
     for (std::size_t i = 0; i < 256; ++i) {
       const auto byte = static_cast<std::uint8_t>(i);
@@ -165,7 +163,7 @@ Image8 resized(const Image8& image, int width, int height, const TexelMeaning& m
                Wrap wrap_v, const Context& context) {
   if (width < 1 || height < 1) throw Error(ErrorKind::usage, "an image has at least one texel");
   if (width == image.width && height == image.height) return image;
-  const Mixing mixing(meaning, image.channels);
+  const Mixing mixing(meaning, image);
   const int channels = image.channels;
   const std::size_t narrow = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
 
@@ -200,7 +198,7 @@ Image8 resized(const Image8& image, int width, int height, const TexelMeaning& m
         mixing.encode(sum.data() + i, out + i);
     }
   });
-  if (meaning.alpha_cutoff && has_alpha(channels)) {
+  if (meaning.alpha_cutoff && image.has_alpha()) {
     const int limit = std::clamp(static_cast<int>(std::ceil(*meaning.alpha_cutoff * 255)), 1, 255);
     keep_coverage(result, coverage(image, limit), *meaning.alpha_cutoff);
   }

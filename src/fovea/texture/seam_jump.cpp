@@ -23,17 +23,6 @@ constexpr double kMostPoints = 1 << 14;
 /// An edge as one of its triangles has it in the texture.
 using Side = std::array<Vec2d, 2>;
 
-std::array<double, 3> looked_up(const Image8& image, Vec2d uv, const Sampler& sampler) {
-  std::array<double, 3> color{};
-  const bool is_grey = image.channels < 3;
-  for (const BilinearTap& tap :
-       bilinear_taps({uv.x * image.width, uv.y * image.height}, image.width, image.height, sampler)) {
-    const std::uint8_t* texel = image.at(tap.x, tap.y);
-    for (std::size_t k = 0; k < 3; ++k) color[k] += tap.weight * texel[is_grey ? 0 : k] / 255;
-  }
-  return color;
-}
-
 double texels(const Image8& image, const Side& side) {
   return std::hypot((side[1].x - side[0].x) * image.width, (side[1].y - side[0].y) * image.height);
 }
@@ -47,7 +36,8 @@ double jump(const Image8& image, const Sampler& sampler, const Side& a, const Si
     const double t = (i + 0.5) / points;
     const auto p = looked_up(image, a[0] * (1 - t) + a[1] * t, sampler),
                q = looked_up(image, b[0] * (1 - t) + b[1] * t, sampler);
-    for (std::size_t k = 0; k < 3; ++k) sum += std::abs(p[k] - q[k]) / 3;
+    const auto colors = static_cast<std::size_t>(image.color_channels());
+    for (std::size_t k = 0; k < colors; ++k) sum += std::abs(p[k] - q[k]) / static_cast<double>(colors);
   }
   return sum / points;
 }
@@ -130,11 +120,9 @@ class SeamScan {
 
 SeamJump seam_jump(const Model& model, Context& context) {
   SeamScan scan(model, context);
-  const std::vector<std::vector<Mat4>> instances = mesh_instances(model);
+  const std::vector<double> scales = largest_scales(model);
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
-    double scale = 0;
-    for (const Mat4& world : instances[m]) scale = std::max(scale, std::cbrt(std::abs(determinant3(world))));
-    if (scale > 0) scan.add(model.meshes[m].surface, scale);
+    if (scales[m] > 0) scan.add(model.meshes[m].surface, scales[m]);
   }
   return scan.take();
 }

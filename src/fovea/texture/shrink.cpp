@@ -33,9 +33,9 @@ constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 /// smaller copies of a texture, which a warp only mixes.
 constexpr int kLeastReduction = 4;
 
-/// How often texels are moved in search of images that take no more than they may, and by how much more
-/// than they are over they get less.
-constexpr int kMovingRounds = 3;
+/// How often texels are moved in search of images that take no more than they may, how often these are
+/// sought at all, and by how much more than they are over they get less.
+constexpr int kMovingRounds = 3, kMostRounds = 8;
 constexpr double kHaste = 0.99;
 
 /// How an image should be but for what all may take together.
@@ -132,13 +132,13 @@ class Shrinker {
   }
 
  private:
-  void change_images(const Atlas& atlas, const std::vector<int>& changing, AtlasChange& change) {
+  void change_images(const Atlas& atlas, std::vector<int> changing, AtlasChange& change) {
     change.fixed_because = atlas.fixed_because;
     if (change.fixed_because.empty() && texels(atlas) > kMostTexels)
       change.fixed_because = "its images are too large to be in memory together";
     if (change.fixed_because.empty() && options_.moves == TexelMoves::none)
       change.fixed_because = "not asked for";
-    if (change.fixed_because.empty()) change.fixed_because = move(atlas, change);
+    if (change.fixed_because.empty()) change.fixed_because = move(atlas, changing, change);
     if (change.fixed_because.empty()) return;
     const bool fill = atlas.fixed_because.empty();
     const std::vector<AtlasFace> faces = fill ? atlas_faces(result_.model, atlas) : std::vector<AtlasFace>{};
@@ -237,8 +237,8 @@ class Shrinker {
     file.bytes = std::move(output.texture.bytes);
   }
 
-  /// Why it did not, or nothing.
-  std::string move(const Atlas& atlas, AtlasChange& change) {
+  /// Why it did not, or nothing. Takes the images from `changing` that are done all the same.
+  std::string move(const Atlas& atlas, std::vector<int>& changing, AtlasChange& change) {
     if (std::ranges::none_of(atlas.images, [&](int image) { return is_smaller(image); }))
       return "no image gets fewer texels";
     if (options_.moves == TexelMoves::balanced && std::ranges::none_of(atlas.images, [&](int image) {
@@ -276,7 +276,13 @@ class Shrinker {
       change.plain_loss = warp.plain_loss;
       change.maps = std::move(warp.maps);
       change.importance = std::move(warp.importance);
-      if (!warp.is_moved) return "it would gain nothing";
+      if (!warp.is_moved) {
+        for (std::size_t i = 0; i < pictures.size(); ++i) {
+          if (is_smaller(atlas.images[i]) && std::erase(changing, atlas.images[i]) > 0)
+            finish(atlas.images[i], warp.images[i]);
+        }
+        return "it would gain nothing";
+      }
       std::vector<ImageOutput> outputs;
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         std::optional<ImageOutput> output = encoded(atlas.images[i], warp.images[i]);
@@ -305,15 +311,20 @@ class Shrinker {
       }
       if (is_smaller(image))
         picture = resized(picture, width, height, use.meaning, use.wrap_u, use.wrap_v, context_);
-      std::optional<ImageOutput> output = encoded(image, picture);
-      if (!output) return keep(image, "in the wanted format it would be larger");
-      if (old.width > 0 && !prepared_.new_maps.contains(image) && !is_better(image, old, picture, *output))
-        return keep(image, "baked anew it would show no more");
-      set(image, std::move(*output));
+      finish(image, picture, old);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
       keep(image, error.message());
     }
+  }
+
+  /// Encodes the picture; `old` is what it was baked anew from, at the same size, or empty.
+  void finish(int image, const Image8& picture, const Image8& old = {}) {
+    std::optional<ImageOutput> output = encoded(image, picture);
+    if (!output) return keep(image, "in the wanted format it would be larger");
+    if (old.width > 0 && !prepared_.new_maps.contains(image) && !is_better(image, old, picture, *output))
+      return keep(image, "baked anew it would show no more");
+    set(image, std::move(*output));
   }
 
   /// Whether the new file is nearer than the old image to what was baked.
@@ -364,8 +375,10 @@ Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, S
   ByteBudget budget(prepared.model, prepared.atlases, known, options.output, field, context);
   const auto most = static_cast<double>(*options.max_bytes);
   double goal = most;
+  std::vector<WantedImage> last;
   for (int round = 0;; ++round) {
-    // What moves is encoded at other sizes than was tried: a few times with less, then not at all.
+    // What moves, or is baked anew, takes other bytes than was tried: a few times with less, then it does not
+    // move any more, until nothing gets smaller.
     if (round == kMovingRounds) {
       options.moves = TexelMoves::none;
       goal = most;
@@ -377,11 +390,14 @@ Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, S
     Shrunk result = shrunk(prepared, wanted, options, field, context);
     const auto bytes = static_cast<double>(result.bytes);
     if (bytes <= most) return result;
-    if (options.moves == TexelMoves::none) {
-      context.report("bytes-missed",
-                     fmt::format("image files take {} bytes, {} more than asked for: nothing can be smaller",
-                                 result.bytes, result.bytes - static_cast<std::uint64_t>(*options.max_bytes)),
-                     "");
+    const bool is_least = wanted == last || round >= kMostRounds;
+    last = std::move(wanted);
+    if (is_least && options.moves == TexelMoves::none) {
+      context.report(
+          "bytes-missed",
+          fmt::format("image files take {} bytes, {} more than asked for: no smaller ones were found",
+                      result.bytes, result.bytes - static_cast<std::uint64_t>(*options.max_bytes)),
+          "");
       return result;
     }
     goal *= kHaste * most / bytes;
@@ -419,11 +435,9 @@ OptionList describe(ShrinkOptions& o) {
        "what is seen.",
        &o.max_bytes, "bytes", 1},
       {"warp",
-       "Move texels within textures that become smaller to where they matter: balanced by what would be "
-       "lost, where it shows "
-       "and who looks, if that gains; or as published, by saliency (Yang et al. 2016) or frequency (Balmelli "
-       "et "
-       "al. 2002).",
+       "Move texels within textures to where they matter: balanced by what would be lost, where it shows and "
+       "who looks, if a side becomes a quarter or less and it gains; or as published, by saliency (Yang et "
+       "al. 2016) or frequency (Balmelli et al. 2002).",
        choice(o.moves, {"none", "balanced", "saliency", "frequency"}), ""},
   };
   const OptionList output = describe(o.output);

@@ -107,4 +107,18 @@ std::array<float, 4> TangentFrames::corner_tangent(std::uint32_t face, std::size
   return {t.x, t.y, t.z, static_cast<float>(c.side)};
 }
 
+std::vector<std::array<float, 3>> tangent_turns(const Model& model, std::span<const AtlasFace> from,
+                                                std::span<const AtlasFace> to) {
+  const TangentFrames before(model, from), after(model, to);
+  std::vector<std::array<float, 3>> turns(from.size());
+  for (std::uint32_t f = 0; f < turns.size(); ++f) {
+    for (const std::size_t k : kCorners) {
+      std::array<double, 3> weights{};
+      weights[k] = 1;
+      turns[f][k] = turn(before.at(f, weights), after.at(f, weights));
+    }
+  }
+  return turns;
+}
+
 }  // namespace fovea

@@ -30,7 +30,7 @@ float turn(const TangentFrame& from, const TangentFrame& to);
 
 /// The frames of an atlas's triangles in the pose at rest, in the space of their meshes: of the meshes' own
 /// normals and tangents; without normals triangles are flat, without tangents these follow the coordinates,
-/// averaged by area over triangles that share a value, as tangent_turn.h has them.
+/// averaged by area over triangles that share a value.
 class TangentFrames {
  public:
   /// O(#F). `faces` must be those of the model.
@@ -54,5 +54,11 @@ class TangentFrames {
 
   std::vector<Corners> corners_;  // [#faces]
 };
+
+/// By how much normal maps turn at each corner of triangles whose coordinates change from `from[i]` to
+/// `to[i]`, against frames that follow the coordinates; 0 where a mesh has tangents of its own, which stay.
+/// O(#F).
+std::vector<std::array<float, 3>> tangent_turns(const Model& model, std::span<const AtlasFace> from,
+                                                std::span<const AtlasFace> to);
 
 }  // namespace fovea

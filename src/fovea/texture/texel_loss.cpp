@@ -12,21 +12,6 @@ namespace {
 /// Rows that a thread takes at once.
 constexpr std::size_t kGrain = 16;
 
-using Texel = std::array<float, 4>;
-
-Texel looked_up(const Image8& image, double u, double v) {
-  const Sampler clamp{
-      .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
-  Texel sum{};
-  for (const BilinearTap& tap :
-       bilinear_taps({u * image.width, v * image.height}, image.width, image.height, clamp)) {
-    const std::uint8_t* texel = image.at(tap.x, tap.y);
-    for (int k = 0; k < image.channels; ++k)
-      sum[static_cast<std::size_t>(k)] += static_cast<float>(tap.weight) * static_cast<float>(texel[k]) / 255;
-  }
-  return sum;
-}
-
 }  // namespace
 
 float loss_weight(const TexelMeaning& meaning) {
@@ -41,9 +26,10 @@ float loss_weight(const TexelMeaning& meaning) {
 ImageF texel_losses(const Image8& before, const Image8& after, const TexelMeaning& meaning,
                     const TexelOrigins& places, const Context& context) {
   assert(before.channels == after.channels);
-  const bool has_alpha = before.channels % 2 == 0;
-  const int channels = has_alpha && !meaning.transparent ? before.channels - 1 : before.channels;
+  const int channels = meaning.transparent ? before.channels : before.color_channels();
   const float weight = loss_weight(meaning);
+  const Sampler clamp{
+      .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
   ImageF result(places.width, places.height, 1, ColorEncoding::linear);
   parallel_for_or_throw(
       context, static_cast<std::size_t>(places.height), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -52,15 +38,15 @@ ImageF texel_losses(const Image8& before, const Image8& after, const TexelMeanin
           for (int x = 0; x < places.width; ++x) {
             const std::size_t i = places.index(x, y);
             if (places.drawn[i] == 0) continue;
-            const Texel was = looked_up(before, (x + 0.5) / places.width, (y + 0.5) / places.height),
-                        is = looked_up(after, static_cast<double>(places.texels[i].uv.x),
-                                       static_cast<double>(places.texels[i].uv.y));
-            float sum = 0;
-            for (int k = 0; k < channels; ++k) {
-              const float d = was[static_cast<std::size_t>(k)] - is[static_cast<std::size_t>(k)];
-              sum += d * d;
-            }
-            *result.at(x, y) = weight * sum;
+            const TexelOrigin& place = places.texels[i];
+            const auto was = looked_up(before, {(x + 0.5) / places.width, (y + 0.5) / places.height}, clamp),
+                       is = looked_up(after,
+                                      Vec2d{static_cast<double>(place.uv.x), static_cast<double>(place.uv.y)},
+                                      clamp);
+            double sum = 0;
+            for (std::size_t k = 0; k < static_cast<std::size_t>(channels); ++k)
+              sum += (was[k] - is[k]) * (was[k] - is[k]);
+            *result.at(x, y) = weight * static_cast<float>(sum);
           }
         }
       });

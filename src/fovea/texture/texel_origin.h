@@ -16,7 +16,7 @@ namespace fovea {
 struct TexelOrigin {
   Vec2f uv;                       ///< In the old image: 0 … 1, v down.
   std::uint32_t face = kInvalid;  ///< Of the list that was drawn.
-  float turn = 0;                 ///< By how much normal maps turn on the way (tangent_turn.h), in radians,
+  float turn = 0;                 ///< By how much normal maps turn on the way (tangent_frame.h), in radians,
   bool is_mirrored = false;       ///< and whether their green turns over then.
 };
 using TexelOrigins = AtlasRaster<TexelOrigin>;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fovea/base/math.h"
+#include "fovea/model/image.h"
 #include "fovea/model/material.h"
 #include "fovea/model/wrap.h"
 
@@ -57,6 +58,17 @@ inline std::array<BilinearTap, 4> bilinear_taps(Vec2d point, int width, int heig
             y1 = wrapped_texel(row + 1, height, sampler.wrap_v);
   return {
       {{x0, y0, (1 - fx) * (1 - fy)}, {x1, y0, fx * (1 - fy)}, {x0, y1, (1 - fx) * fy}, {x1, y1, fx * fy}}};
+}
+
+/// What a bilinear filter finds at `uv`, 0 … 1: stored values, 0 … 1, of as many channels as there are.
+inline std::array<double, 4> looked_up(const Image8& image, Vec2d uv, const Sampler& sampler) {
+  std::array<double, 4> sum{};
+  for (const BilinearTap& tap :
+       bilinear_taps({uv.x * image.width, uv.y * image.height}, image.width, image.height, sampler)) {
+    const std::uint8_t* texel = image.at(tap.x, tap.y);
+    for (int k = 0; k < image.channels; ++k) sum[static_cast<std::size_t>(k)] += tap.weight * texel[k] / 255;
+  }
+  return sum;
 }
 
 }  // namespace fovea
