@@ -8,8 +8,8 @@
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
 #include "fovea/texture/rebake.h"
+#include "fovea/texture/seen_loss.h"
 #include "fovea/texture/tangent_frame.h"
-#include "fovea/texture/texel_loss.h"
 
 namespace fovea {
 
@@ -148,6 +148,11 @@ ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
   return balanced_importance(maps);
 }
 
+ImageF product(ImageF a, const ImageF& b) {
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) a.pixels[i] *= b.pixels[i];
+  return a;
+}
+
 class Warper {
  public:
   Warper(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
@@ -158,7 +163,15 @@ class Warper {
         rebake_(rebake),
         context_(context),
         from_(atlas_faces(model, atlas)),
-        maps_(texture_importance(model, atlas, field, kMapSide, context)) {}
+        maps_(texture_importance(model, atlas, field, kMapSide, context)),
+        weights_(product(maps_.saliency, maps_.coverage)) {
+    std::vector<const Image8*> before;
+    for (const WarpedImage& image : images) {
+      before.push_back(image.image);
+      meanings_.push_back(image.meaning);
+    }
+    seen_loss_.emplace(model, from_, before, meanings_, weights_);
+  }
 
   AtlasWarp unmoved() {
     AtlasWarp result;
@@ -167,12 +180,9 @@ class Warper {
       result.images.push_back(resized(*image.image, image.width, image.height, image.meaning, image.wrap_u,
                                       image.wrap_v, context_));
     places_ = places(from_);
-    maps_.detail = ImageF(maps_.coverage.width, maps_.coverage.height, 1, ColorEncoding::linear);
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      const ImageF lost = losses(i, result.images[i], places_);
-      for (std::size_t t = 0; t < lost.pixels.size(); ++t) maps_.detail.pixels[t] += lost.pixels[t];
-    }
-    result.loss = result.plain_loss = mean(maps_.detail);
+    maps_.detail = seen_loss_->map(from_, places_, result.images, context_);
+    plain_loss_ = seen_loss_->of(from_, places_, result.images, context_);
+    result.loss = result.plain_loss = plain_loss_.mean();
     return result;
   }
 
@@ -186,8 +196,9 @@ class Warper {
   }
   const TextureImportance& maps() const { return maps_; }
 
-  /// None if it folds something over.
-  std::optional<AtlasWarp> moved(Warp warp) {
+  /// After `unmoved`. None if it folds something over; if `measured`, also if pictures of some size lose by
+  /// it.
+  std::optional<AtlasWarp> moved(Warp warp, bool measured) {
     AtlasWarp result;
     result.is_moved = true;
     result.warp = std::move(warp);
@@ -219,8 +230,9 @@ class Warper {
       result.images.push_back(
           resized(large, image.width, image.height, image.meaning, image.wrap_u, image.wrap_v, context_));
     }
-    const TexelOrigins there = places(result.to);
-    for (std::size_t i = 0; i < images_.size(); ++i) result.loss += mean(losses(i, result.images[i], there));
+    const PictureLosses loss = seen_loss_->of(result.to, places(result.to), result.images, context_);
+    if (measured && loss.is_worse_somewhere(plain_loss_)) return std::nullopt;
+    result.loss = loss.mean();
     return result;
   }
 
@@ -228,20 +240,6 @@ class Warper {
   /// Where the texels of the maps are in the new images.
   TexelOrigins places(std::span<const AtlasFace> to) const {
     return texel_origins(from_, to, {}, maps_.coverage.width, maps_.coverage.height, context_);
-  }
-  ImageF losses(std::size_t i, const Image8& image, const TexelOrigins& places) const {
-    return texel_losses(*images_[i].image, image, images_[i].meaning, places, context_);
-  }
-  /// Over the surface, as it is looked at.
-  double mean(const ImageF& losses) const {
-    double sum = 0, weights = 0;
-    for (std::size_t i = 0; i < losses.pixels.size(); ++i) {
-      const double weight =
-          static_cast<double>(maps_.saliency.pixels[i]) * static_cast<double>(maps_.coverage.pixels[i]);
-      sum += weight * static_cast<double>(losses.pixels[i]);
-      weights += weight;
-    }
-    return weights > 0 ? sum / weights : 0;
   }
 
   const Model& model_;
@@ -251,6 +249,10 @@ class Warper {
   Context& context_;
   std::vector<AtlasFace> from_;
   TextureImportance maps_;
+  ImageF weights_;  // how much places are looked at
+  std::vector<TexelMeaning> meanings_;
+  std::optional<SeenLoss> seen_loss_;
+  PictureLosses plain_loss_{};
   TexelOrigins places_;
 };
 
@@ -272,7 +274,7 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
     asked.joined_v = asked.joined_v || image.wrap_v == Wrap::repeat;
   }
   for (int attempt = 0; attempt < kAttempts && asked.floor <= 1; ++attempt, asked.floor *= 2) {
-    std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
+    std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context), measured);
     if (!next || (measured && next->loss >= best.loss)) continue;
     best = std::move(*next);
     best.floor = asked.floor;

@@ -45,7 +45,7 @@ struct AtlasWarp {
   Warp warp;
   bool is_moved = false;  ///< Else all is where it was.
   double floor = 0;       ///< WarpOptions::floor that it came to; 0 if nothing moved.
-  /// What pictures lose with it, and by plain resizing: the mean over the surface (texel_loss.h).
+  /// What pictures lose with it, and by plain resizing: seen_loss.h.
   double loss = 0, plain_loss = 0;
 };
 
