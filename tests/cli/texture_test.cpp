@@ -122,12 +122,59 @@ TEST_F(TextureVerb, ValuesOutOfRangeAreRefused) {
   for (const auto& [option, value] : {std::pair{"--texture-scale", "0"},
                                       {"--texture-scale", "1.5"},
                                       {"--max-texture", "-3"},
+                                      {"--texture-size", "0"},
+                                      {"--texture-size", "-512"},
+                                      {"--texture-size", "big"},
+                                      {"--texture-bytes", "0"},
+                                      {"--texture-bytes", "-1"},
+                                      {"--texture-bytes", "10k"},
                                       {"--texture-psnr", "5"},
                                       {"--texture-format", "gif"}}) {
     const Outcome outcome = texture({vase_, "-o", out("bad.glb"), option, value});
     EXPECT_EQ(outcome.code, 2) << option << value;
     EXPECT_THAT(outcome.err, HasSubstr(option));
   }
+}
+
+TEST_F(TextureVerb, EachImageIsAsLargeAsItIsSeen) {
+  const Outcome outcome = texture({vase_, "-o", out("seen.glb"), "--texture-size", "64", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json image = outcome.json()["images"][0];
+  const double per_pixel = image["texels_per_pixel"], width = image["before"]["width"];
+  EXPECT_EQ(image["reason"], "seen");
+  EXPECT_NEAR(image["after"]["width"], width / per_pixel, 1);
+  EXPECT_LT(image["after"]["width"], width);
+  const Outcome text = texture({vase_, "-o", out("seen2.glb"), "--texture-size", "64"});
+  EXPECT_THAT(text.out, HasSubstr("texels per pixel"));
+  // From nearby nothing is too large.
+  const Outcome near = texture({vase_, "-o", out("near.glb"), "--texture-size", "65536", "--json"});
+  EXPECT_EQ(near.json()["images"][0]["reason"], "none");
+}
+
+TEST_F(TextureVerb, ImagesFitIntoBytes) {
+  const Outcome outcome = texture(
+      {vase_, "-o", out("bytes.glb"), "--texture-bytes", "20000", "--texture-format", "webp", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::uint64_t sum = 0;
+  for (const EncodedImage& image : model(out("bytes.glb")).images) sum += image.bytes.size();
+  EXPECT_LE(sum, 20000u);
+  EXPECT_GT(sum, 10000u);
+  EXPECT_EQ(outcome.json()["reached"], true);
+  EXPECT_EQ(outcome.json()["images"][0]["reason"], "bytes");
+}
+
+TEST_F(TextureVerb, BytesThatCannotBeReachedAreAMiss) {
+  const Outcome outcome = texture({vase_, "-o", out("few.glb"), "--texture-bytes", "10", "--json"});
+  EXPECT_EQ(outcome.code, 8);
+  EXPECT_EQ(outcome.json()["reached"], false);
+  EXPECT_TRUE(std::filesystem::exists(out("few.glb")));
+  EXPECT_THAT(outcome.err, HasSubstr("--allow-miss"));
+  EXPECT_EQ(texture({vase_, "-o", out("few2.glb"), "--texture-bytes", "10", "--allow-miss"}).code, 0);
+}
+
+TEST_F(TextureVerb, OptionsThatDoNothingAloneAreRefused) {
+  EXPECT_EQ(texture({vase_, "-o", out("x.glb"), "--max-texture", "64", "--views", "cube"}).code, 2);
+  EXPECT_EQ(texture({vase_, "-o", out("x.glb"), "--max-texture", "64", "--allow-miss"}).code, 2);
 }
 
 TEST_F(TextureVerb, AModelWithoutTexturesComesThrough) {

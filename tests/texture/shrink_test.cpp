@@ -3,14 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/base/random.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/texture/image_use.h"
+#include "support/meshes.h"
 #include "support/pictures.h"
 #include "support/reading.h"
+#include "support/textured.h"
 
 namespace fovea {
 namespace {
@@ -177,6 +181,105 @@ TEST(ShrinkTextures, OptionsAreChecked) {
   ShrinkOptions options;
   options.scale = 0;
   test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
+  options = {};
+  options.scales = {1};
+  test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
+  options.scales = {1, 1.5};
+  test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
+  options = {};
+  options.max_bytes = 0;
+  test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
+}
+
+TEST(ShrinkTextures, ScalesAreThoseOfEachImageAndObeyTheOtherLimits) {
+  ShrinkOptions options;
+  options.scales = {0.25, 1};
+  const Shrunk found = shrink(two_images(), options);
+  EXPECT_EQ(found.images[0].after.width, 16);
+  EXPECT_EQ(found.images[0].reason, SizeReason::seen);
+  EXPECT_EQ(found.model.images[1], two_images().images[1]);
+  EXPECT_EQ(found.images[1].reason, SizeReason::none);
+  options.max_side = 10;
+  EXPECT_EQ(shrink(two_images(), options).images[0].after.width, 10);
+  EXPECT_EQ(shrink(two_images(), options).images[0].reason, SizeReason::asked);
+}
+
+/// A square that shows two images as colours: one full of detail, one of a single even slope.
+Model detailed_and_flat() {
+  Image8 flat(128, 128, 3, ColorEncoding::srgb);
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) flat.at(x, y)[0] = static_cast<std::uint8_t>(x + y / 2);
+  }
+  Model model = test::textured(test::grid(2, 2), 2);
+  model.images = {png(picture(128, 128)), png(flat)};
+  model.materials[0].emissive = std::exchange(model.materials[0].normal, {});
+  return model;
+}
+
+std::uint64_t bytes_of(const Model& model) {
+  std::uint64_t sum = 0;
+  for (const EncodedImage& image : model.images) sum += image.bytes.size();
+  return sum;
+}
+
+TEST(ShrinkTextures, BytesGoToWhereDetailIs) {
+  const Model model = detailed_and_flat();
+  for (const TextureOutput format : {TextureOutput::keep, TextureOutput::webp, TextureOutput::jpeg}) {
+    ShrinkOptions options;
+    options.output.format = format;
+    for (const int bytes : {30000, 12000, 6000}) {
+      options.max_bytes = bytes;
+      const Shrunk found = shrink(model, options);
+      EXPECT_LE(found.bytes, static_cast<std::uint64_t>(bytes));
+      EXPECT_EQ(found.bytes, bytes_of(found.model));
+      EXPECT_GE(found.images[0].after.bytes, 3 * found.images[1].after.bytes) << bytes;
+      EXPECT_TRUE(found.images[0].reason == SizeReason::bytes || found.images[0].psnr_db >= 40);
+    }
+  }
+}
+
+TEST(ShrinkTextures, BytesThatSufficeChangeNothing) {
+  const Model model = detailed_and_flat();
+  ShrinkOptions options;
+  options.max_bytes = static_cast<std::int64_t>(bytes_of(model));
+  EXPECT_EQ(shrink(model, options).model.images, model.images);
+}
+
+TEST(ShrinkTextures, BytesThatCannotBeReachedAreTold) {
+  Model model = detailed_and_flat();
+  model.images.push_back({"", "image/ktx2", "", std::vector<std::uint8_t>(5000), ""});
+  ShrinkOptions options;
+  options.max_bytes = 4000;
+  Context context;
+  const Shrunk found = shrink_textures(model, options, {}, context);
+  EXPECT_GT(found.bytes, 5000u);
+  EXPECT_LT(found.bytes, 6000u);
+  EXPECT_EQ(found.model.images[2], model.images[2]);
+  const std::vector<Diagnostic> told = context.diagnostics();
+  EXPECT_TRUE(std::ranges::any_of(told, [](const Diagnostic& d) { return d.code == "bytes-missed"; }));
+}
+
+TEST(ShrinkTextures, BytesObeyTheOtherLimits) {
+  ShrinkOptions options;
+  options.max_bytes = 20000;
+  options.scale = 0.5;
+  options.scales = {1, 0.25};
+  const Shrunk found = shrink(detailed_and_flat(), options);
+  EXPECT_LE(found.images[0].after.width, 64);
+  EXPECT_LE(found.images[1].after.width, 32);
+  EXPECT_LE(found.bytes, 20000u);
+}
+
+TEST(ShrinkTextures, BytesAreTheSameForAnyNumberOfThreads) {
+  ShrinkOptions options;
+  options.max_bytes = 9000;
+  options.output.format = TextureOutput::webp;
+  Context one, four;
+  one.threads = 1;
+  four.threads = 4;
+  const Model model = detailed_and_flat();
+  EXPECT_EQ(shrink_textures(model, options, {}, one).model.images,
+            shrink_textures(model, options, {}, four).model.images);
 }
 
 }  // namespace

@@ -35,8 +35,20 @@ TEST(ChooseSteps, TakesFromWhereLeastIsLost) {
   EXPECT_THAT(choose_steps(ladders, 200), ElementsAre(0, 0, 0));
   EXPECT_THAT(choose_steps(ladders, 199), ElementsAre(1, 0, 0));
   EXPECT_THAT(choose_steps(ladders, 110), ElementsAre(2, 0, 0));
-  EXPECT_THAT(choose_steps(ladders, 109), ElementsAre(1, 1, 0));  // 60 would do; back up where there is room
-  EXPECT_THAT(choose_steps(ladders, 5), ElementsAre(2, 2, 0));    // cannot be
+  EXPECT_THAT(choose_steps(ladders, 109), ElementsAre(2, 1, 0));
+  EXPECT_THAT(choose_steps(ladders, 5), ElementsAre(2, 2, 0));  // cannot be
+}
+
+TEST(FillRoom, SpendsWhatIsLeftOnWhatSavesMost) {
+  const std::vector<std::vector<LadderStep>> ways{
+      {step(100, 0), step(60, 9), step(50, 10), step(10, 30)}, {step(100, 0), step(30, 4)}, {}};
+  std::vector<std::size_t> chosen{3, 1, 0};
+  fill_room(ways, 95, chosen);  // 55 are left
+  EXPECT_THAT(chosen, ElementsAre(1, 1, 0));
+  fill_room(ways, 1000, chosen);
+  EXPECT_THAT(chosen, ElementsAre(0, 0, 0));
+  fill_room(ways, 10, chosen);  // nothing is left
+  EXPECT_THAT(chosen, ElementsAre(0, 0, 0));
 }
 
 /// All choices of three ladders, tried one by one.

@@ -143,16 +143,18 @@ double ByteBudget::encoded_bytes(const Candidate& candidate, const LadderStep& s
 }
 
 ByteBudget::Numbers ByteBudget::numbers_within(double bytes) const {
+  std::vector<std::vector<LadderStep>> ways;
   std::vector<SizeLadder> ladders;
   for (const Candidate& candidate : candidates_) {
-    std::vector<LadderStep> steps = candidate.steps;
-    for (LadderStep& step : steps)
+    ways.push_back(candidate.steps);
+    for (LadderStep& step : ways.back())
       step.bytes = candidate.exact[step.number].value_or(step.bytes * candidate.correction);
-    ladders.push_back(lower_hull(std::move(steps)));
+    ladders.push_back(lower_hull(ways.back()));
   }
   const std::vector<std::size_t> chosen = choose_steps(ladders, bytes);
   Numbers numbers;
   for (std::size_t c = 0; c < chosen.size(); ++c) numbers.push_back(ladders[c][chosen[c]].number);
+  fill_room(ways, bytes, numbers);
   return numbers;
 }
 

@@ -31,20 +31,6 @@ std::size_t cheapest(std::span<const SizeLadder> ladders, std::span<const std::s
   return best;
 }
 
-/// The ladder with the dearest step that fits back in; none if none fits.
-std::size_t dearest(std::span<const SizeLadder> ladders, std::span<const std::size_t> steps, double room) {
-  std::size_t best = ladders.size();
-  double most = 0;
-  for (std::size_t i = 0; i < ladders.size(); ++i) {
-    if (ladders[i].empty() || steps[i] == 0) continue;
-    const LadderStep &now = ladders[i][steps[i]], &up = ladders[i][steps[i] - 1];
-    if (up.bytes - now.bytes > room || !(price(up, now) > most)) continue;
-    best = i;
-    most = price(up, now);
-  }
-  return best;
-}
-
 }  // namespace
 
 SizeLadder lower_hull(std::vector<LadderStep> steps) {
@@ -68,10 +54,28 @@ std::vector<std::size_t> choose_steps(std::span<const SizeLadder> ladders, doubl
     if (next == ladders.size()) return steps;
     ++steps[next];
   }
+  return steps;
+}
+
+void fill_room(std::span<const std::vector<LadderStep>> ways, double bytes,
+               std::vector<std::size_t>& chosen) {
+  double room = bytes - sum_of_bytes(ways, chosen);
   for (;;) {
-    const std::size_t next = dearest(ladders, steps, bytes - sum_of_bytes(ladders, steps));
-    if (next == ladders.size()) return steps;
-    --steps[next];
+    std::size_t best = ways.size(), best_way = 0;
+    double most = 0;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      if (ways[i].empty()) continue;
+      const LadderStep& now = ways[i][chosen[i]];
+      for (std::size_t w = 0; w < ways[i].size(); ++w) {
+        if (ways[i][w].bytes - now.bytes > room || !(now.loss - ways[i][w].loss > most)) continue;
+        most = now.loss - ways[i][w].loss;
+        best = i;
+        best_way = w;
+      }
+    }
+    if (best == ways.size()) return;
+    room -= ways[best][best_way].bytes - ways[best][chosen[best]].bytes;
+    chosen[best] = best_way;
   }
 }
 
