@@ -68,7 +68,8 @@ std::string tell_images(Session& session, const Shrunk& result,
     if (encoded)
       what = "-> " + state_text(change.after) + encoding_text(change.psnr_db) +
              reason_text(change.reason, per_pixel);
-    table.row({name_of(result.model, i), state_text(change.before), what});
+    const bool is_new = change.before.bytes == 0;
+    table.row({name_of(result.model, i), is_new ? "new" : state_text(change.before), what});
   }
   return table.text(0);
 }

@@ -211,8 +211,8 @@ class Simplify : public Verb {
     const std::optional<std::int64_t>& most = shrink_options_.max_bytes;
     texture_bytes_reached_ = !most || result.bytes <= static_cast<std::uint64_t>(*most);
     simplified = result.model;
-    texture_text_ =
-        simplified.images.empty() ? "textures none\n" : tell_shrunk(session, result, rebake_ == Rebake::on);
+    texture_text_ = tell_shrunk(session, result, rebake_ == Rebake::on);
+    if (simplified.images.empty()) texture_text_ = "textures none\n";
   }
 
   int tell(Session& session, const Snapshot& before, const Snapshot& after,

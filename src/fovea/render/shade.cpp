@@ -117,7 +117,7 @@ Vec3f TriangleShader::to_eye(const SurfacePoint& point) const {
 }
 
 /// Bends a normal by the material's normal map. Without tangents of its own a triangle has those along which
-/// its texture coordinates run.
+/// its texture coordinates run, or none if it has no area there.
 Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point, LastLook& last) const {
   const SceneTexture& texture = *material_->normal_texture;
   const auto corners = uv(texture.uv_set);
@@ -140,6 +140,7 @@ Vec3f TriangleShader::map_normal(Vec3f normal, const SurfacePoint& point, LastLo
     const Vec2f a = texture.matrix.direction(corner_uv(1) - corner_uv(0)),
                 b = texture.matrix.direction(corner_uv(2) - corner_uv(0));
     const float area = cross(a, b);
+    if (area == 0) return normal;
     const Vec3f ea = positions_[1] - positions_[0], eb = positions_[2] - positions_[0];
     tangent = (ea * b.y - eb * a.y) * (area < 0 ? -1.0f : 1.0f);
     // v points down, green points up: with u to the right that is a right-handed frame.

@@ -7,6 +7,7 @@
 
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
+#include "fovea/texture/moved_values.h"
 #include "fovea/texture/rebake.h"
 #include "fovea/texture/seen_loss.h"
 #include "fovea/texture/tangent_frame.h"
@@ -27,11 +28,6 @@ constexpr int kLeastOversampling = 2, kMostOversampling = 8;
 constexpr int kLongestBaked = 4096;
 /// Mean squared difference below which nothing is lost: that of half a step of a byte.
 constexpr double kLeastLoss = 0.25 / (255.0 * 255.0);
-/// Of a triangle's area in the texture: what it has to keep, but for what others need.
-constexpr double kLeastArea = 0.02;
-/// What those that turn over get, and how often all are looked at for such.
-constexpr double kRestored = 0.25;
-constexpr int kMostPasses = 100;
 /// Part of the texels that may show two places at once; rasterisation alone makes some.
 constexpr double kMostConflicts = 5e-3;
 
@@ -40,58 +36,6 @@ int oversampling(const WarpedImage& image) {
   const int longest = std::max(image.width, image.height);
   const int wanted = (image.image->width + image.width - 1) / image.width;
   return std::clamp(std::min(wanted, kLongestBaked / longest), kLeastOversampling, kMostOversampling);
-}
-
-/// Twice the area, with a sign.
-double area(const AtlasFace& face, const std::vector<Vec2d>& at) {
-  return cross(at[face.value[1]] - at[face.value[0]], at[face.value[2]] - at[face.value[0]]);
-}
-double area(const AtlasFace& face) { return cross(face.uv[1] - face.uv[0], face.uv[2] - face.uv[0]); }
-
-double length_of(Vec2d a) { return std::hypot(a.x, a.y); }
-
-/// The corner across from the longest side.
-std::size_t apex(const AtlasFace& face) {
-  std::size_t best = 0;
-  double longest = -1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double side = length_of(face.uv[(k + 2) % 3] - face.uv[(k + 1) % 3]);
-    if (side > longest) longest = side, best = k;
-  }
-  return best;
-}
-
-/// Values where a warp takes them. Between its corners a triangle stays straight, so thin ones can turn over
-/// though the warp does not fold: their corners are moved apart until they are as high again, in their
-/// proportion. Whether that came to an end.
-bool unturn(std::span<const AtlasFace> from, std::vector<Vec2d>& at) {
-  for (int pass = 0; pass < kMostPasses; ++pass) {
-    bool done = true;
-    for (const AtlasFace& face : from) {
-      const double before = area(face), after = area(face, at);
-      if (before == 0 || after / before >= kLeastArea) continue;
-      done = false;
-      const std::size_t k = apex(face), i = (k + 1) % 3, j = (k + 2) % 3;
-      const Vec2d side = at[face.value[j]] - at[face.value[i]];
-      const double length = length_of(side), old_length = length_of(face.uv[j] - face.uv[i]);
-      if (!(length > 0)) return false;
-      const double wanted = before * (length / old_length) * (length / old_length) * kRestored;
-      const Vec2d up = Vec2d{-side.y, side.x} * (1 / length);
-      const Vec2d move = up * ((wanted - after) / length / 2);
-      at[face.value[k]] = at[face.value[k]] + move;
-      at[face.value[i]] = at[face.value[i]] - move;
-      at[face.value[j]] = at[face.value[j]] - move;
-    }
-    if (done) return true;
-  }
-  return false;
-}
-
-std::size_t value_count(std::span<const AtlasFace> faces) {
-  std::size_t count = 0;
-  for (const AtlasFace& face : faces)
-    for (const std::uint32_t value : face.value) count = std::max<std::size_t>(count, value + std::size_t{1});
-  return count;
 }
 
 /// Part of the drawn texels that show more than one place of the old image, a texel or more apart.
@@ -148,9 +92,16 @@ ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
   return balanced_importance(maps);
 }
 
-ImageF product(ImageF a, const ImageF& b) {
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) a.pixels[i] *= b.pixels[i];
-  return a;
+std::vector<const Image8*> pointers(std::span<const WarpedImage> images) {
+  std::vector<const Image8*> result;
+  for (const WarpedImage& image : images) result.push_back(image.image);
+  return result;
+}
+
+std::vector<TexelMeaning> meanings(std::span<const WarpedImage> images) {
+  std::vector<TexelMeaning> result;
+  for (const WarpedImage& image : images) result.push_back(image.meaning);
+  return result;
 }
 
 class Warper {
@@ -164,14 +115,7 @@ class Warper {
         context_(context),
         from_(atlas_faces(model, atlas)),
         maps_(texture_importance(model, atlas, field, kMapSide, context)),
-        weights_(product(maps_.saliency, maps_.coverage)) {
-    std::vector<const Image8*> before;
-    for (const WarpedImage& image : images) {
-      before.push_back(image.image);
-      meanings_.push_back(image.meaning);
-    }
-    seen_loss_.emplace(model, from_, before, meanings_, weights_);
-  }
+        seen_loss_(model, from_, pointers(images), meanings(images), field) {}
 
   AtlasWarp unmoved() {
     AtlasWarp result;
@@ -180,8 +124,8 @@ class Warper {
       result.images.push_back(resized(*image.image, image.width, image.height, image.meaning, image.wrap_u,
                                       image.wrap_v, context_));
     places_ = places(from_);
-    maps_.detail = seen_loss_->map(from_, places_, result.images, context_);
-    plain_loss_ = seen_loss_->of(from_, places_, result.images, context_);
+    maps_.detail = seen_loss_.map(places_, result.images, context_);
+    plain_loss_ = seen_loss_.of(from_, result.images, context_);
     result.loss = result.plain_loss = plain_loss_.mean();
     return result;
   }
@@ -202,14 +146,11 @@ class Warper {
     AtlasWarp result;
     result.is_moved = true;
     result.warp = std::move(warp);
-    const InverseWarp inverse(result.warp.grid);
+    const auto at = moved_values(from_, InverseWarp(result.warp.grid));
+    if (!at) return std::nullopt;
     result.to = from_;
-    std::vector<Vec2d> at(value_count(from_));
-    for (const AtlasFace& face : from_)
-      for (std::size_t k = 0; k < 3; ++k) at[face.value[k]] = inverse.target(face.uv[k]);
-    if (!unturn(from_, at)) return std::nullopt;
     for (AtlasFace& face : result.to)
-      for (std::size_t k = 0; k < 3; ++k) face.uv[k] = at[face.value[k]];
+      for (std::size_t k = 0; k < 3; ++k) face.uv[k] = (*at)[face.value[k]];
     result.model = with_moved_coordinates(model_, atlas_, from_, result.to);
     const auto turns = tangent_turns(model_, from_, result.to);
     std::optional<TexelOrigins> origins, originals;
@@ -230,7 +171,7 @@ class Warper {
       result.images.push_back(
           resized(large, image.width, image.height, image.meaning, image.wrap_u, image.wrap_v, context_));
     }
-    const PictureLosses loss = seen_loss_->of(result.to, places(result.to), result.images, context_);
+    const PictureLosses loss = seen_loss_.of(result.to, result.images, context_);
     if (measured && loss.is_worse_somewhere(plain_loss_)) return std::nullopt;
     result.loss = loss.mean();
     return result;
@@ -249,9 +190,7 @@ class Warper {
   Context& context_;
   std::vector<AtlasFace> from_;
   TextureImportance maps_;
-  ImageF weights_;  // how much places are looked at
-  std::vector<TexelMeaning> meanings_;
-  std::optional<SeenLoss> seen_loss_;
+  SeenLoss seen_loss_;
   PictureLosses plain_loss_{};
   TexelOrigins places_;
 };

@@ -45,8 +45,8 @@ struct ImageChange {
     int width = 0, height = 0;
     std::uint64_t bytes = 0;
   };
-  State before, after;
-  double psnr_db = 0;  ///< Of the encoding, infinite without loss; 0 if the image was not encoded anew.
+  State before, after;  ///< All of `before` is 0 for an image that was added.
+  double psnr_db = 0;   ///< Of the encoding, infinite without loss; 0 if the image was not encoded anew.
   SizeReason reason = SizeReason::none;
   std::string kept_because;  ///< Why it is as it was though it was to be smaller.
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
@@ -15,10 +16,12 @@ namespace {
 
 /// How long the model is in the pictures, in pixels.
 constexpr std::array<double, 3> kPixels{512, 1024, 2048};
-/// Of rows and columns one in so many is looked at.
-constexpr int kStride = 2;
-/// Half a step of a byte, squared.
-constexpr double kLeastLoss = 0.25 / (255.0 * 255.0);
+/// Points on the surface, and how they go on inside triangles: as the sequence R2, by the powers of 1/g, g
+/// the plastic number.
+constexpr std::size_t kPoints = std::size_t{1} << 16;
+constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
+/// Half a step of a byte.
+constexpr double kLeastDistance = 0.5 / 255, kLeastLoss = kLeastDistance * kLeastDistance;
 constexpr Sampler kSampler{
     .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
 
@@ -41,15 +44,6 @@ double squared_difference(const Rgba& was, const Rgba& is, const TexelMeaning& m
   const float r = shown(was.r) - shown(is.r), g = shown(was.g) - shown(is.g), b = shown(was.b) - shown(is.b),
               a = meaning.transparent ? was.a - is.a : 0;
   return static_cast<double>(r * r + g * g + b * b + a * a);
-}
-
-/// Calls `visit(y)` for one in `stride` rows, on all threads.
-template <class Visit>
-void for_rows(int height, int stride, const Context& context, const Visit& visit) {
-  const auto count = static_cast<std::size_t>((height + stride - 1) / stride);
-  parallel_for_or_throw(context, count, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) visit(static_cast<int>(row) * stride);
-  });
 }
 
 }  // namespace
@@ -79,6 +73,7 @@ void PictureLosses::add(const PictureLosses& other, double weight) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i] += weight * other.all[i];
     color[i] += weight * other.color[i];
+    distance[i] += weight * other.distance[i];
   }
 }
 
@@ -91,59 +86,102 @@ double PictureLosses::mean() const {
 
 bool PictureLosses::is_worse_somewhere(const PictureLosses& than) const {
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i] > std::max(than.all[i], kLeastLoss) || color[i] > std::max(than.color[i], kLeastLoss))
+    if (all[i] > std::max(than.all[i], kLeastLoss) || color[i] > std::max(than.color[i], kLeastLoss) ||
+        distance[i] > std::max(than.distance[i], kLeastDistance))
       return true;
   }
   return false;
 }
 
-SeenLoss::SeenLoss(const Model& model, std::span<const AtlasFace> faces,
-                   std::span<const Image8* const> images, std::span<const TexelMeaning> meanings,
-                   const ImageF& weights)
-    : model_(model), meanings_(meanings), weights_(weights), before_{surface_slopes(model, faces), {}} {
+SeenLoss::SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::span<const Image8* const> images,
+                   std::vector<TexelMeaning> meanings, std::span<const VertexField> field)
+    : model_(model),
+      faces_(std::move(faces)),
+      meanings_(std::move(meanings)),
+      before_{surface_slopes(model, faces_), {}} {
   const Box box = bounds(model);
   diagonal_ = length(Vec3d(box.high) - Vec3d(box.low));
   for (std::size_t i = 0; i < images.size(); ++i)
-    before_.images.emplace_back(*images[i], encoding_of(meanings[i]));
+    before_.images.emplace_back(*images[i], encoding_of(meanings_[i]));
+  spread_points(field);
 }
 
-PictureLosses SeenLoss::of(std::span<const AtlasFace> to, const TexelOrigins& places,
-                           std::span<const Image8> images, const Context& context) const {
+void SeenLoss::spread_points(std::span<const VertexField> field) {
+  const std::vector<double> scales = largest_scales(model_);
+  std::vector<double> ends;  // of the areas, added up
+  double area = 0;
+  for (const AtlasFace& face : faces_) {
+    const TriMesh& mesh = model_.meshes[face.mesh].surface;
+    const auto at = [&](std::size_t k) {
+      return Vec3d(mesh.positions[mesh.triangles[face.face][k].index()]);
+    };
+    area += triangle_area(at(0), at(1), at(2)) * scales[face.mesh] * scales[face.mesh];
+    ends.push_back(area);
+  }
+  if (!(area > 0)) return;
+  std::uint32_t face = 0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double along = area * (static_cast<double>(i) + 0.5) / kPoints;
+    while (face + std::size_t{1} < ends.size() && ends[face] < along) ++face;
+    // Evenly over a triangle, wherever in it the sum of areas ends.
+    const double root = std::sqrt(std::fmod(0.5 + static_cast<double>(i) * kStepX, 1.0)),
+                 across = std::fmod(0.5 + static_cast<double>(i) * kStepY, 1.0);
+    Point point{face, {1 - root, root * (1 - across), root * across}, 1};
+    if (!field.empty()) {
+      const auto& triangle = model_.meshes[faces_[face].mesh].surface.triangles[faces_[face].face];
+      point.counts = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        point.counts += point.weights[k] * static_cast<double>(field[faces_[face].mesh][triangle[k]]);
+    }
+    points_.push_back(point);
+  }
+}
+
+PictureLosses SeenLoss::of(std::span<const AtlasFace> to, std::span<const Image8> images,
+                           const Context& context) const {
+  constexpr std::size_t kChunk = 1024;
   const View now = view(to, images);
-  std::vector<PictureLosses> rows(static_cast<std::size_t>(places.height));
-  std::vector<double> weights(rows.size());
-  for_rows(places.height, kStride, context, [&](int y) {
-    const auto row = static_cast<std::size_t>(y);
-    for (int x = 0; x < places.width; x += kStride) {
-      const std::size_t i = places.index(x, y);
-      const auto weight = static_cast<double>(weights_.pixels[i]);
-      if (places.drawn[i] == 0 || weight == 0) continue;
-      rows[row].add(at(x, y, places, now), weight);
-      weights[row] += weight;
+  std::vector<PictureLosses> sums((points_.size() + kChunk - 1) / kChunk);
+  std::vector<double> counts(sums.size());
+  parallel_for_or_throw(context, sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      for (std::size_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, points_.size()); ++i) {
+        const Point& point = points_[i];
+        const Vec2f was = single(uv_at(faces_[point.face], point.weights)),
+                    is = single(uv_at(to[point.face], point.weights));
+        sums[chunk].add(at(point.face, was, is, now), point.counts);
+        counts[chunk] += point.counts;
+      }
     }
   });
   PictureLosses sum, mean;
-  double weight = std::numeric_limits<double>::min();
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    sum.add(rows[row], 1);
-    weight += weights[row];
+  double count = std::numeric_limits<double>::min();
+  for (std::size_t chunk = 0; chunk < sums.size(); ++chunk) {
+    sum.add(sums[chunk], 1);
+    count += counts[chunk];
   }
-  mean.add(sum, 1 / weight);
+  mean.add(sum, 1 / count);
   return mean;
 }
 
-ImageF SeenLoss::map(std::span<const AtlasFace> to, const TexelOrigins& places,
-                     std::span<const Image8> images, const Context& context) const {
-  const View now = view(to, images);
+ImageF SeenLoss::map(const TexelOrigins& places, std::span<const Image8> images,
+                     const Context& context) const {
+  const View now = view(faces_, images);
   ImageF result(places.width, places.height, 1, ColorEncoding::linear);
-  for_rows(places.height, 1, context, [&](int y) {
-    for (int x = 0; x < places.width; ++x) {
-      if (places.drawn[places.index(x, y)] == 0) continue;
-      double sum = 0;
-      for (const double loss : at(x, y, places, now).all) sum += loss;
-      *result.at(x, y) = static_cast<float>(sum / kPixels.size());
-    }
-  });
+  parallel_for_or_throw(context, static_cast<std::size_t>(places.height), 8,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                            for (int x = 0; x < places.width; ++x) {
+                              const std::size_t i = places.index(x, y);
+                              if (places.drawn[i] == 0) continue;
+                              const Vec2f uv = places.texels[i].uv;
+                              double sum = 0;
+                              for (const double loss : at(places.texels[i].face, uv, uv, now).all)
+                                sum += loss;
+                              *result.at(x, y) = static_cast<float>(sum / kPixels.size());
+                            }
+                          }
+                        });
   return result;
 }
 
@@ -154,21 +192,20 @@ SeenLoss::View SeenLoss::view(std::span<const AtlasFace> faces, std::span<const 
   return view;
 }
 
-PictureLosses SeenLoss::at(int x, int y, const TexelOrigins& places, const View& now) const {
-  const TexelOrigin& place = places.texels[places.index(x, y)];
-  const Vec2f uv{(static_cast<float>(x) + 0.5f) / static_cast<float>(places.width),
-                 (static_cast<float>(y) + 0.5f) / static_cast<float>(places.height)};
+PictureLosses SeenLoss::at(std::uint32_t face, Vec2f was, Vec2f is, const View& now) const {
   PictureLosses result;
   for (std::size_t p = 0; p < kPixels.size(); ++p) {
     const double pixel = diagonal_ / kPixels[p];
-    const UvSlopes was = scaled(before_.slopes[place.face], pixel),
-                   is = scaled(now.slopes[place.face], pixel);
+    const UvSlopes slopes_before = scaled(before_.slopes[face], pixel),
+                   slopes_now = scaled(now.slopes[face], pixel);
     for (std::size_t k = 0; k < now.images.size(); ++k) {
       const TexelMeaning& meaning = meanings_[k];
-      const double loss = squared_difference(before_.images[k].sample(uv, was, kSampler),
-                                             now.images[k].sample(place.uv, is, kSampler), meaning);
+      const double loss = squared_difference(before_.images[k].sample(was, slopes_before, kSampler),
+                                             now.images[k].sample(is, slopes_now, kSampler), meaning);
       result.all[p] += loss * static_cast<double>(loss_weight(meaning));
-      if (meaning.kind == TexelMeaning::Kind::color) result.color[p] += loss;
+      if (meaning.kind != TexelMeaning::Kind::color) continue;
+      result.color[p] += loss;
+      result.distance[p] += std::sqrt(loss);
     }
   }
   return result;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/base/context.h"
+#include "fovea/model/field.h"
 #include "fovea/model/image.h"
 #include "fovea/model/model.h"
 #include "fovea/texture/mip_map.h"
@@ -19,48 +20,56 @@ namespace fovea {
 /// the scene where a mesh is shown largest: of [#faces], 0 where a triangle has no area.
 std::vector<UvSlopes> surface_slopes(const Model& model, std::span<const AtlasFace> faces);
 
-/// Squared differences of pictures in which a model is 512, 1024 and 2048 pixels long.
+/// Differences of pictures in which a model is 512, 1024 and 2048 pixels long, of shown values, 0 … 1.
 struct PictureLosses {
-  std::array<double, 3> all{};    ///< Of all images, weighted by `loss_weight`.
-  std::array<double, 3> color{};  ///< Of colours alone.
+  std::array<double, 3> all{};       ///< Squared, of all images, weighted by `loss_weight`: as PSNR counts.
+  std::array<double, 3> color{};     ///< Squared, of colours alone.
+  std::array<double, 3> distance{};  ///< Of colours alone, not squared: nearer to what FLIP counts.
 
-  /// The geometric mean; each counts for half a step of a byte at least.
+  /// The geometric mean of the first two; each counts for half a step of a byte at least.
   double mean() const;
   bool is_worse_somewhere(const PictureLosses& than) const;
   void add(const PictureLosses& other, double weight);
 };
 
-/// What pictures lose when the texels of an atlas move and its images are others: images are looked up as
-/// GPUs do, with mip maps, where the surface faces the viewer.
+/// What pictures lose when the texels of an atlas move and its images are others: at points all over the
+/// surface, which count alike but for the field, images are looked up as GPUs do, with mip maps, as if the
+/// surface faced the viewer. So triangles count that cover no texel's centre, or none at all.
 class SeenLoss {
  public:
-  /// `faces` are where they were in `images`; `weights` says how much each place counts, in the space of the
-  /// atlas. All are kept by reference but for the images. O(#F + #texels).
-  SeenLoss(const Model& model, std::span<const AtlasFace> faces, std::span<const Image8* const> images,
-           std::span<const TexelMeaning> meanings, const ImageF& weights);
+  /// `faces` are where they are in `images`, the field as for `texture_importance`. Keeps a reference to the
+  /// model. O(#F + #texels).
+  SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::span<const Image8* const> images,
+           std::vector<TexelMeaning> meanings, std::span<const VertexField> field);
 
-  /// The mean over the surface, of shown values, 0 … 1. `places` is as large as the weights and says where
-  /// they are in the new images, `to` where triangles are. O(#texels of the weights), parallel.
-  PictureLosses of(std::span<const AtlasFace> to, const TexelOrigins& places, std::span<const Image8> images,
+  /// The mean over the surface, of shown values, 0 … 1, with triangles and images like these. Parallel.
+  PictureLosses of(std::span<const AtlasFace> to, std::span<const Image8> images,
                    const Context& context) const;
-  /// Place by place, of all images: the mean over the pictures; 0 where nothing is drawn.
-  ImageF map(std::span<const AtlasFace> to, const TexelOrigins& places, std::span<const Image8> images,
-             const Context& context) const;
+  /// Texel by texel, the mean over the pictures if only the images change; 0 where nothing is drawn.
+  /// `places` says which triangle is where. O(#texels of `places`), parallel.
+  ImageF map(const TexelOrigins& places, std::span<const Image8> images, const Context& context) const;
 
  private:
+  struct Point {
+    std::uint32_t face;
+    std::array<double, 3> weights;  // of its corners
+    double counts;
+  };
   /// Images and how they lie on the surface.
   struct View {
     std::vector<UvSlopes> slopes;  // [#faces]
     std::vector<MipMap> images;
   };
+  void spread_points(std::span<const VertexField> field);
   View view(std::span<const AtlasFace> faces, std::span<const Image8> images) const;
-  PictureLosses at(int x, int y, const TexelOrigins& places, const View& now) const;
+  PictureLosses at(std::uint32_t face, Vec2f was, Vec2f is, const View& now) const;
 
   const Model& model_;
-  std::span<const TexelMeaning> meanings_;
-  const ImageF& weights_;
+  std::vector<AtlasFace> faces_;
+  std::vector<TexelMeaning> meanings_;
   double diagonal_;  // of the model
   View before_;
+  std::vector<Point> points_;
 };
 
 }  // namespace fovea

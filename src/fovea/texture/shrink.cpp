@@ -128,6 +128,7 @@ class Shrinker {
 
   Shrunk take() {
     for (const EncodedImage& image : result_.model.images) result_.bytes += image.bytes.size();
+    for (const int image : prepared_.new_maps) result_.images[index(image)].before = {};
     return std::move(result_);
   }
 

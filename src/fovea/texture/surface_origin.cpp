@@ -118,7 +118,7 @@ std::optional<SurfaceOrigin::Place> SurfaceOrigin::place(std::uint32_t face,
   const std::array<Vec3d, 3>& p = points_[face];
   FacingPoint::Query query;
   query.point = p[0] * weights[0] + p[1] * weights[1] + p[2] * weights[2];
-  query.normal = frames_.normal(face, weights);
+  query.normal = frames_.face_normal(face);
   query.most = kReach * longest_edge(p);
   query.kind = kinds_[face];
   if (!(query.most > 0) || !(length(query.normal) > 0)) return {};

@@ -22,7 +22,7 @@ namespace fovea {
 /// surface the place of the original that it stands for, in the pose at rest.
 ///
 /// That is the place of the same mesh, material and connected piece that lies nearest along the normal of the
-/// simpler surface and faces the same way, no farther than half the longest edge of the triangle; if there is
+/// triangle's plane and faces the same way, no farther than half the triangle's longest edge; if there is
 /// none, the nearest in any direction; else there is none.
 class SurfaceOrigin {
  public:

@@ -65,8 +65,8 @@ void TangentFrames::add_tangents(const Model& model, std::span<const AtlasFace> 
     };
     const Vec2d a = face.uv[1] - face.uv[0], b = face.uv[2] - face.uv[0];
     // v points down: with u to the right a triangle that is not mirrored has its corners clockwise.
-    const double sign = cross(a, b) < 0 ? -1 : 1;
-    corners_[i].side = -sign;
+    const double area = cross(a, b), sign = area < 0 ? -1 : area > 0 ? 1 : 0;
+    corners_[i].side = area < 0 ? 1 : -1;
     const Vec3d along = normalized((at(1) - at(0)) * b.y - (at(2) - at(0)) * a.y) *
                         (sign * triangle_area(at(0), at(1), at(2)));
     for (const std::uint32_t value : face.value) {
