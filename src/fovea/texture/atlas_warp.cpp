@@ -123,9 +123,9 @@ class Warper {
     for (const WarpedImage& image : images_)
       result.images.push_back(resized(*image.image, image.width, image.height, image.meaning, image.wrap_u,
                                       image.wrap_v, context_));
-    places_ = places(from_);
+    places_ = texel_origins(from_, from_, {}, maps_.coverage.width, maps_.coverage.height, context_);
     maps_.detail = seen_loss_.map(places_, result.images, context_);
-    plain_loss_ = seen_loss_.of(from_, result.images, context_);
+    plain_loss_ = seen_loss_.of(from_, {}, result.images, context_);
     result.loss = result.plain_loss = plain_loss_.mean();
     return result;
   }
@@ -171,18 +171,13 @@ class Warper {
       result.images.push_back(
           resized(large, image.width, image.height, image.meaning, image.wrap_u, image.wrap_v, context_));
     }
-    const PictureLosses loss = seen_loss_.of(result.to, result.images, context_);
+    const PictureLosses loss = seen_loss_.of(result.to, turns, result.images, context_);
     if (measured && loss.is_worse_somewhere(plain_loss_)) return std::nullopt;
     result.loss = loss.mean();
     return result;
   }
 
  private:
-  /// Where the texels of the maps are in the new images.
-  TexelOrigins places(std::span<const AtlasFace> to) const {
-    return texel_origins(from_, to, {}, maps_.coverage.width, maps_.coverage.height, context_);
-  }
-
   const Model& model_;
   const Atlas& atlas_;
   std::span<const WarpedImage> images_;

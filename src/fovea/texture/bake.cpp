@@ -6,6 +6,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
 #include "fovea/texture/fill.h"
+#include "fovea/texture/tangent_frame.h"
 
 namespace fovea {
 
@@ -17,14 +18,6 @@ constexpr std::size_t kGrain = 16;
 constexpr int kAnisotropy = 4;
 
 std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255 + 0.5f); }
-
-/// A normal seen from the frame of a texel.
-Rgba turned(Rgba normal, const TexelOrigin& origin) {
-  if (origin.turn == 0 && !origin.is_mirrored) return normal;
-  const float angle = origin.turn, side = origin.is_mirrored ? -0.5f : 0.5f;
-  const float c = std::cos(angle), s = std::sin(angle), x = 2 * normal.r - 1, y = 2 * normal.g - 1;
-  return {0.5f + 0.5f * (c * x + s * y), 0.5f + side * (c * y - s * x), normal.b, normal.a};
-}
 
 }  // namespace
 
@@ -60,7 +53,7 @@ Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigin
                               if (origins.drawn[i] == 0) continue;
                               const TexelOrigin& origin = origins.texels[i];
                               Rgba value = map.sample(origin.uv, slopes[origin.face], sampler, kAnisotropy);
-                              if (is_normal) value = turned(value, origin);
+                              if (is_normal) value = turned(value, origin.turn, origin.is_mirrored);
                               std::uint8_t* out = result.at(x, static_cast<int>(y));
                               const float colors[] = {value.r, value.g, value.b};
                               const int alpha = image.color_channels();

@@ -17,7 +17,7 @@ struct TextureImportance {
   ImageF saliency;    ///< STM of Yang et al. (2016), section 4.2.1: the field over the triangles. 0 … 1.
   ImageF distortion;  ///< TDM: how much less of the texture than others a triangle has. 0 … 1.
   ImageF coverage;    ///< Surface per texture, as the scene shows it: the mean over all triangles is 1.
-  ImageF detail;      ///< Mean squared difference that the wanted size makes (texel_loss.h).
+  ImageF detail;      ///< What the wanted size loses (`SeenLoss::map`).
 };
 
 /// The maps that follow from shape alone; `detail` is left empty. The field [#meshes][#V] says how much is

@@ -8,6 +8,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
+#include "fovea/texture/tangent_frame.h"
 #include "fovea/texture/texel_loss.h"
 
 namespace fovea {
@@ -15,7 +16,9 @@ namespace fovea {
 namespace {
 
 /// How long the model is in the pictures, in pixels.
-constexpr std::array<double, 3> kPixels{512, 1024, 2048};
+constexpr std::array<double, kPictureSizes> kPixels{512, 1024, 2048};
+/// Of the angle between a surface and who looks: that of a sphere, by what of it shows.
+constexpr double kMeanCosine = 2.0 / 3;
 /// Points on the surface, and how they go on inside triangles: as the sequence R2, by the powers of 1/g, g
 /// the plastic number.
 constexpr std::size_t kPoints = std::size_t{1} << 16;
@@ -137,8 +140,8 @@ void SeenLoss::spread_points(std::span<const VertexField> field) {
   }
 }
 
-PictureLosses SeenLoss::of(std::span<const AtlasFace> to, std::span<const Image8> images,
-                           const Context& context) const {
+PictureLosses SeenLoss::of(std::span<const AtlasFace> to, std::span<const std::array<float, 3>> turns,
+                           std::span<const Image8> images, const Context& context) const {
   constexpr std::size_t kChunk = 1024;
   const View now = view(to, images);
   std::vector<PictureLosses> sums((points_.size() + kChunk - 1) / kChunk);
@@ -149,7 +152,10 @@ PictureLosses SeenLoss::of(std::span<const AtlasFace> to, std::span<const Image8
         const Point& point = points_[i];
         const Vec2f was = single(uv_at(faces_[point.face], point.weights)),
                     is = single(uv_at(to[point.face], point.weights));
-        sums[chunk].add(at(point.face, was, is, now), point.counts);
+        double turn = 0;
+        for (std::size_t k = 0; k < 3 && !turns.empty(); ++k)
+          turn += point.weights[k] * static_cast<double>(turns[point.face][k]);
+        sums[chunk].add(at(point.face, was, is, static_cast<float>(turn), now), point.counts);
         counts[chunk] += point.counts;
       }
     }
@@ -176,7 +182,7 @@ ImageF SeenLoss::map(const TexelOrigins& places, std::span<const Image8> images,
                               if (places.drawn[i] == 0) continue;
                               const Vec2f uv = places.texels[i].uv;
                               double sum = 0;
-                              for (const double loss : at(places.texels[i].face, uv, uv, now).all)
+                              for (const double loss : at(places.texels[i].face, uv, uv, 0, now).all)
                                 sum += loss;
                               *result.at(x, y) = static_cast<float>(sum / kPixels.size());
                             }
@@ -192,16 +198,17 @@ SeenLoss::View SeenLoss::view(std::span<const AtlasFace> faces, std::span<const 
   return view;
 }
 
-PictureLosses SeenLoss::at(std::uint32_t face, Vec2f was, Vec2f is, const View& now) const {
+PictureLosses SeenLoss::at(std::uint32_t face, Vec2f was, Vec2f is, float turn, const View& now) const {
   PictureLosses result;
   for (std::size_t p = 0; p < kPixels.size(); ++p) {
-    const double pixel = diagonal_ / kPixels[p];
+    const double pixel = diagonal_ / (kPixels[p] * kMeanCosine);
     const UvSlopes slopes_before = scaled(before_.slopes[face], pixel),
                    slopes_now = scaled(now.slopes[face], pixel);
     for (std::size_t k = 0; k < now.images.size(); ++k) {
       const TexelMeaning& meaning = meanings_[k];
-      const double loss = squared_difference(before_.images[k].sample(was, slopes_before, kSampler),
-                                             now.images[k].sample(is, slopes_now, kSampler), meaning);
+      Rgba before = before_.images[k].sample(was, slopes_before, kSampler);
+      if (meaning.kind == TexelMeaning::Kind::normal) before = turned(before, turn, false);
+      const double loss = squared_difference(before, now.images[k].sample(is, slopes_now, kSampler), meaning);
       result.all[p] += loss * static_cast<double>(loss_weight(meaning));
       if (meaning.kind != TexelMeaning::Kind::color) continue;
       result.color[p] += loss;

@@ -20,11 +20,14 @@ namespace fovea {
 /// the scene where a mesh is shown largest: of [#faces], 0 where a triangle has no area.
 std::vector<UvSlopes> surface_slopes(const Model& model, std::span<const AtlasFace> faces);
 
+inline constexpr std::size_t kPictureSizes = 3;
 /// Differences of pictures in which a model is 512, 1024 and 2048 pixels long, of shown values, 0 … 1.
 struct PictureLosses {
-  std::array<double, 3> all{};       ///< Squared, of all images, weighted by `loss_weight`: as PSNR counts.
-  std::array<double, 3> color{};     ///< Squared, of colours alone.
-  std::array<double, 3> distance{};  ///< Of colours alone, not squared: nearer to what FLIP counts.
+  std::array<double, kPictureSizes>
+      all{};  ///< Squared, of all images, weighted by `loss_weight`: as PSNR counts.
+  std::array<double, kPictureSizes> color{};  ///< Squared, of colours alone.
+  std::array<double, kPictureSizes>
+      distance{};  ///< Of colours alone, not squared: nearer to what FLIP counts.
 
   /// The geometric mean of the first two; each counts for half a step of a byte at least.
   double mean() const;
@@ -34,7 +37,8 @@ struct PictureLosses {
 
 /// What pictures lose when the texels of an atlas move and its images are others: at points all over the
 /// surface, which count alike but for the field, images are looked up as GPUs do, with mip maps, as if the
-/// surface faced the viewer. So triangles count that cover no texel's centre, or none at all.
+/// surface were seen at the same angle everywhere. So triangles count that cover no texel's centre, or none
+/// at all.
 class SeenLoss {
  public:
   /// `faces` are where they are in `images`, the field as for `texture_importance`. Keeps a reference to the
@@ -42,9 +46,10 @@ class SeenLoss {
   SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::span<const Image8* const> images,
            std::vector<TexelMeaning> meanings, std::span<const VertexField> field);
 
-  /// The mean over the surface, of shown values, 0 … 1, with triangles and images like these. Parallel.
-  PictureLosses of(std::span<const AtlasFace> to, std::span<const Image8> images,
-                   const Context& context) const;
+  /// The mean over the surface with triangles and images like these, normal maps among them that turn at
+  /// corners by `turns` (`tangent_turns`; or none at all). Parallel.
+  PictureLosses of(std::span<const AtlasFace> to, std::span<const std::array<float, 3>> turns,
+                   std::span<const Image8> images, const Context& context) const;
   /// Texel by texel, the mean over the pictures if only the images change; 0 where nothing is drawn.
   /// `places` says which triangle is where. O(#texels of `places`), parallel.
   ImageF map(const TexelOrigins& places, std::span<const Image8> images, const Context& context) const;
@@ -62,7 +67,7 @@ class SeenLoss {
   };
   void spread_points(std::span<const VertexField> field);
   View view(std::span<const AtlasFace> faces, std::span<const Image8> images) const;
-  PictureLosses at(std::uint32_t face, Vec2f was, Vec2f is, const View& now) const;
+  PictureLosses at(std::uint32_t face, Vec2f was, Vec2f is, float turn, const View& now) const;
 
   const Model& model_;
   std::vector<AtlasFace> faces_;

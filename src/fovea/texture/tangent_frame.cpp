@@ -28,6 +28,13 @@ float turn(const TangentFrame& from, const TangentFrame& to) {
   return static_cast<float>(std::atan2(dot(to.tangent, from.bitangent), dot(to.tangent, from.tangent)));
 }
 
+Rgba turned(Rgba normal, float angle, bool is_mirrored) {
+  if (angle == 0 && !is_mirrored) return normal;
+  const float side = is_mirrored ? -0.5f : 0.5f;
+  const float c = std::cos(angle), s = std::sin(angle), x = 2 * normal.r - 1, y = 2 * normal.g - 1;
+  return {0.5f + 0.5f * (c * x + s * y), 0.5f + side * (c * y - s * x), normal.b, normal.a};
+}
+
 TangentFrames::TangentFrames(const Model& model, std::span<const AtlasFace> faces) : corners_(faces.size()) {
   add_normals(model, faces);
   add_tangents(model, faces);

@@ -8,6 +8,7 @@
 #include "fovea/base/math.h"
 #include "fovea/model/model.h"
 #include "fovea/texture/atlas.h"
+#include "fovea/texture/mip_map.h"
 
 // Shared inside Fovea, not installed.
 
@@ -27,6 +28,9 @@ struct TangentFrame {
 /// By how much normal maps turn from one frame to the other: the angle from the old tangent towards the old
 /// bitangent, in radians.
 float turn(const TangentFrame& from, const TangentFrame& to);
+
+/// A texel of a normal map as a frame stores it that is turned by `angle`, radians, and mirrored or not.
+Rgba turned(Rgba normal, float angle, bool is_mirrored);
 
 /// The frames of an atlas's triangles in the pose at rest, in the space of their meshes: of the meshes' own
 /// normals and tangents; without normals triangles are flat, without tangents these follow the coordinates,
