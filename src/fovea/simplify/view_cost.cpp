@@ -8,6 +8,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/prefetch.h"
+#include "fovea/base/wide.h"
 
 namespace fovea {
 
@@ -27,6 +28,19 @@ double log2_of(double x) {
   return exponent + 2 * s * sum * 1.4426950408889634;
 }
 
+/// Notes a face at the pixels [begin, end) of a row where it is nearer than what is noted of them from x0 on.
+FOVEA_WIDE void lay_span(const NearnessPlane& plane, int y, int x0, int begin, int end, std::uint32_t number,
+                         float* __restrict nearness, std::uint32_t* __restrict nearest) {
+  const auto row = static_cast<float>(plane.at_0 + plane.dy * y), slope = static_cast<float>(plane.dx);
+  const float low = plane.low, high = plane.high;
+  for (int x = begin; x < end; ++x) {
+    const float n = std::clamp(row + slope * static_cast<float>(x), low, high);
+    const float known = nearness[x - x0];
+    nearest[x - x0] = n > known ? number : nearest[x - x0];
+    nearness[x - x0] = n > known ? n : known;
+  }
+}
+
 }  // namespace
 
 /// A face around the edge, in one showing.
@@ -40,7 +54,7 @@ struct ViewCost::LocalFace {
 
 /// The faces around an edge and the pixels that they cover, before and after its collapse.
 struct ViewCost::Scratch {
-  explicit Scratch(std::size_t shown_faces) : changed_by(shown_faces, 0) {}
+  Scratch(std::size_t shown_faces, std::size_t values) : changed_by(shown_faces + 1, 0), delta(values, 0) {}
 
   /// A face as the present view would see it, and the pixels in which it would be in front.
   struct Seen {
@@ -61,37 +75,46 @@ struct ViewCost::Scratch {
     looks.emplace_back();
   }
   /// Whether the collapse changes the face of a fragment; never the background.
-  bool changes(const Fragment& fragment) const {
-    return fragment.triangle != kInvalid && changed_by[fragment.triangle] == collapse;
+  bool changes(const Fragment& fragment) const {  // the last in `changed_by` stands for no triangle
+    return changed_by[std::min<std::size_t>(fragment.triangle, changed_by.size() - 1)] == collapse;
   }
 
-  /// Pixels of a view inside `box` from now on, none touched.
+  /// What a face covers of a row.
+  struct Span {
+    int begin = 0, end = 0;
+    std::uint32_t face = 0;  // counted from 1; 0: before the collapse
+    std::uint32_t next = kInvalid;
+  };
   void begin_view(const SampleRect& pixels_box) {
     box = pixels_box;
-    const std::size_t count = static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height);
-    touched.assign(count, 0);
-    local.assign(count, 0);
-    nearness.assign(count, -std::numeric_limits<float>::infinity());
+    spans.clear();
+    first_span.assign(static_cast<std::size_t>(box.height), kInvalid);
+    nearness.resize(static_cast<std::size_t>(box.width));
+    local.resize(static_cast<std::size_t>(box.width));
   }
-  /// Where pixel (x, y) of the view is in the box.
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y - box.top) * static_cast<std::size_t>(box.width) +
-           static_cast<std::size_t>(x - box.left);
+  void add_span(int y, int begin, int end, std::uint32_t face) {
+    std::uint32_t& first = first_span[static_cast<std::size_t>(y - box.top)];
+    spans.push_back({begin, end, face, first});
+    first = static_cast<std::uint32_t>(spans.size() - 1);
   }
 
-  std::vector<std::uint32_t> changed_by;  // [#shown faces], the last collapse that changes them
+  std::vector<std::uint32_t> changed_by;  // [#shown faces + 1], the last collapse that changes them
   std::uint32_t collapse = 0;
   std::vector<LocalFace> faces;                // by shown number
   std::vector<std::optional<FaceLook>> looks;  // [#faces]
   std::array<std::vector<Seen>, 2> seen;       // [#faces] or more, in a view and the next
   SampleRect box;
-  std::vector<std::uint8_t> touched;     // [#pixels of the box], whether a face covers it, before or after;
+  std::vector<Span> spans;
+  std::vector<std::uint32_t> first_span;  // [#rows of the box] in `spans`, by face
+  std::vector<NearnessPlane> planes;      // [#faces], of those that are seen after
+  // Of a row of the box:
   std::vector<std::uint32_t> local;      // the nearest face after the collapse, counted from 1,
   std::vector<float> nearness;           // and how near it is
   std::vector<std::uint32_t> values;     // of pixels that are shaded
   std::vector<PlannedCollapse> planned;  // [#showings of the slot]
   std::vector<ScreenVertex> merged;      // [#showings of the slot][#views]
-  std::vector<std::pair<std::uint32_t, int>> deltas;
+  std::vector<int> delta;                // [#values], pixels more after the collapse (entropy)
+  std::vector<std::uint32_t> in_delta;   // where that may not be 0
 };
 
 ViewCost::~ViewCost() = default;
@@ -136,7 +159,8 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
 }
 
 std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
-  return std::make_shared<Scratch>(shown_.face_count());
+  return std::make_shared<Scratch>(shown_.face_count(),
+                                   measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
 }
 
 std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const ShownInstance& showing,
@@ -373,40 +397,55 @@ void ViewCost::fetch(std::size_t view, const SampleRect& box) const {
   }
 }
 
-/// Finds the pixels of a view that the faces cover before or after, and the nearest after.
+/// Finds the pixels of a view that the faces cover before or after.
 void ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
-  for (std::size_t i = 0; i < scratch.faces.size(); ++i) lay_over(view, i, scratch);
+  const SampleRect whole = views_[view].lists.rect();
+  scratch.planes.clear();
+  scratch.planes.resize(scratch.faces.size());
+  for (std::size_t i = scratch.faces.size(); i-- > 0;) {
+    const LocalFace& local = scratch.faces[i];
+    const Scratch::Seen& seen = scratch.seen[view % 2][i];
+    if (seen.before) {
+      for_spans({local.before[0][view], local.before[1][view], local.before[2][view]}, whole,
+                [&](int y, int begin, int end, const NearnessPlane&) { scratch.add_span(y, begin, end, 0); });
+    }
+    if (!seen.after) continue;
+    for_spans(seen.corners, whole, [&](int y, int begin, int end, const NearnessPlane& plane) {
+      scratch.planes[i] = plane;
+      scratch.add_span(y, begin, end, static_cast<std::uint32_t>(i + 1));
+    });
+  }
 }
 
-/// The same of face i alone.
-void ViewCost::lay_over(std::size_t view, std::size_t i, Scratch& scratch) const {
-  const LocalFace& local = scratch.faces[i];
-  const Scratch::Seen& seen = scratch.seen[view % 2][i];
-  const SampleRect whole = views_[view].lists.rect();
-  if (seen.before) {
-    for_spans({local.before[0][view], local.before[1][view], local.before[2][view]}, whole,
-              [&](int y, int begin, int end, const NearnessPlane&) {
-                std::fill_n(scratch.touched.data() + scratch.at(begin, y), end - begin, std::uint8_t{1});
-              });
+/// Finds what is nearest after the collapse in a row, given its first span: the pixels [first, last).
+std::pair<int, int> ViewCost::lay_row(std::size_t view, int y, std::uint32_t span, Scratch& scratch) const {
+  int first = std::numeric_limits<int>::max(), last = 0;
+  for (std::uint32_t s = span; s != kInvalid; s = scratch.spans[s].next) {
+    first = std::min(first, scratch.spans[s].begin);
+    last = std::max(last, scratch.spans[s].end);
   }
-  if (!seen.after) return;
-  for_spans(seen.corners, whole, [&](int y, int begin, int end, const NearnessPlane& plane) {
-    const std::size_t first = scratch.at(begin, y);
-    if (local.has_holes) {
-      scratch.values.resize(static_cast<std::size_t>(whole.width));
-      shading(scratch, i, view).row(y, begin, end, scratch.values.data());
+  const auto count = static_cast<std::size_t>(last - first);
+  std::fill_n(scratch.nearness.data(), count, -std::numeric_limits<float>::infinity());
+  std::fill_n(scratch.local.data(), count, 0u);
+  for (std::uint32_t s = span; s != kInvalid; s = scratch.spans[s].next) {
+    const Scratch::Span& at = scratch.spans[s];
+    if (at.face == 0) continue;
+    const NearnessPlane& plane = scratch.planes[at.face - 1];
+    if (!scratch.faces[at.face - 1].has_holes) {
+      lay_span(plane, y, first, at.begin, at.end, at.face, scratch.nearness.data(), scratch.local.data());
+      continue;
     }
-    float* const nearness = scratch.nearness.data() + first;
-    std::uint32_t* const nearest = scratch.local.data() + first;
-    std::fill_n(scratch.touched.data() + first, end - begin, std::uint8_t{1});
-    const auto number = static_cast<std::uint32_t>(i + 1);
-    plane.for_row(y, begin, end, [&](int x, float n) {
-      const std::size_t k = static_cast<std::size_t>(x - begin);
-      if (local.has_holes && scratch.values[k] == FragmentLists::kHole) return;
-      nearest[k] = n > nearness[k] ? number : nearest[k];
-      nearness[k] = n > nearness[k] ? n : nearness[k];
+    scratch.values.resize(static_cast<std::size_t>(at.end - at.begin));
+    shading(scratch, at.face - 1, view).row(y, at.begin, at.end, scratch.values.data());
+    plane.for_row(y, at.begin, at.end, [&](int x, float n) {
+      if (scratch.values[static_cast<std::size_t>(x - at.begin)] == FragmentLists::kHole) return;
+      const auto k = static_cast<std::size_t>(x - first);
+      if (!(n > scratch.nearness[k])) return;
+      scratch.nearness[k] = n;
+      scratch.local[k] = at.face;
     });
-  });
+  }
+  return {first, last};
 }
 
 /// What face i would show, made when it is first asked for.
@@ -426,21 +465,26 @@ template <class Change>
 void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) const {
   const FragmentLists& lists = views_[v].lists;
   std::vector<Scratch::Seen>& seen = scratch.seen[v % 2];
-  const SampleRect& box = scratch.box;
-  std::size_t k = 0;
-  for (int y = box.top; y < box.top + box.height; ++y) {
-    for (int x = box.left; x < box.left + box.width; ++x, ++k) {
-      if (scratch.touched[k] == 0) continue;
-      const std::size_t p = lists.pixel(x, y);
-      const FrontPixel& front = lists.front(p);
+  for (int row = 0; row < scratch.box.height; ++row) {
+    const std::uint32_t span = scratch.first_span[static_cast<std::size_t>(row)];
+    if (span == kInvalid) continue;
+    const int y = scratch.box.top + row;
+    const auto [first, last] = lay_row(v, y, span, scratch);
+    const FrontPixel* const fronts = &lists.front(lists.pixel(0, y));
+    for (int x = first; x < last; ++x) {
+      const auto k = static_cast<std::size_t>(x - first);
+      const FrontPixel& front = fronts[x];
       const bool goes = scratch.changes(front.first);
-      const Fragment stays = !goes ? front.first : nearest_that_stays(lists, p, scratch);
+      const float nearness = scratch.nearness[k], bound = goes ? front.second.nearness : front.first.nearness;
       const std::uint32_t local = scratch.local[k];
-      if (local != 0 && Fragment{scratch.nearness[k], scratch.faces[local - 1].shown, 0}.is_before(stays)) {
-        seen[local - 1].pixels.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
-      } else if (goes) {
-        change(front, stays.value);
+      bool is_first = nearness > bound;  // whatever of it stays
+      if (!is_first && (goes || (nearness == bound && local != 0))) {
+        const Fragment stays = !goes ? front.first : nearest_that_stays(lists, lists.pixel(x, y), scratch);
+        is_first = local != 0 && Fragment{nearness, scratch.faces[local - 1].shown, 0}.is_before(stays);
+        if (!is_first && goes) change(front, stays.value);
       }
+      if (is_first)
+        seen[local - 1].pixels.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
     }
   }
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
@@ -457,7 +501,7 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
 Fragment ViewCost::nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch) {
   const FrontPixel& front = lists.front(pixel);
   if (!scratch.changes(front.second)) return front.second;
-  for (const Fragment& fragment : lists.at(pixel).subspan(2)) {
+  for (const Fragment& fragment : lists.behind(pixel)) {
     if (!scratch.changes(fragment)) return fragment;
   }
   return lists.background();
@@ -473,26 +517,32 @@ std::int64_t ViewCost::change_of_image(std::size_t v, Scratch& scratch) const {
 
 std::int64_t ViewCost::change_of_entropy(std::size_t v, Scratch& scratch) const {
   const ViewState& view = views_[v];
-  auto& deltas = scratch.deltas;
-  deltas.clear();
   const auto add = [&](std::uint32_t region, int pixels) {
-    for (auto& [known, count] : deltas) {
-      if (known != region) continue;
-      count += pixels;
-      return;
-    }
-    deltas.emplace_back(region, pixels);
+    if (scratch.delta[region] == 0) scratch.in_delta.push_back(region);
+    scratch.delta[region] += pixels;
   };
+  // Neighbours mostly change alike.
+  std::uint32_t from = 0, to = 0;
+  int alike = 0;
   for_changes(v, scratch, [&](const FrontPixel& pixel, std::uint32_t after) {
-    if (pixel.first.value == after) return;
-    add(pixel.first.value, -1);
-    add(after, 1);
+    if (pixel.first.value != from || after != to) {
+      add(from, -alike);
+      add(to, alike);
+      from = pixel.first.value;
+      to = after;
+      alike = 0;
+    }
+    ++alike;
   });
+  add(from, -alike);
+  add(to, alike);
   std::int64_t sum = 0;
-  for (const auto& [region, pixels] : deltas) {
+  for (const std::uint32_t region : scratch.in_delta) {  // one may be there twice
     const std::uint32_t count = view.count[region];
-    sum += n_log_n_[count + static_cast<std::uint32_t>(pixels)] - n_log_n_[count];
+    sum += n_log_n_[count + static_cast<std::uint32_t>(scratch.delta[region])] - n_log_n_[count];
+    scratch.delta[region] = 0;
   }
+  scratch.in_delta.clear();
   return std::abs(sum);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "fovea/base/context.h"
@@ -114,7 +115,7 @@ class ViewCost {
   SampleRect look_at(std::size_t view, Scratch& scratch) const;
   void fetch(std::size_t view, const SampleRect& box) const;
   void lay_over(std::size_t view, Scratch& scratch) const;
-  void lay_over(std::size_t view, std::size_t i, Scratch& scratch) const;
+  std::pair<int, int> lay_row(std::size_t view, int y, std::uint32_t span, Scratch& scratch) const;
   const FaceValues::Shading& shading(Scratch& scratch, std::size_t i, std::size_t view) const;
   static Fragment nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch);
   template <class Change>
