@@ -54,12 +54,14 @@ struct ViewCost::LocalFace {
 
 /// The faces around an edge and the pixels that they cover, before and after its collapse.
 struct ViewCost::Scratch {
-  Scratch(std::size_t shown_faces, std::size_t values) : changed_by(shown_faces + 1, 0), delta(values, 0) {}
+  Scratch(std::size_t shown_faces, std::size_t width, std::size_t value_count)
+      : changed_by(shown_faces + 1, 0), local(width), nearness(width), delta(value_count, 0) {}
 
-  /// A face as the present view would see it, and the pixels in which it would be in front.
+  /// A face as a view would see it, and the pixels in which it would be in front.
   struct Seen {
     bool before = false, after = false;  // whether the view sees it at all
     std::array<ScreenVertex, 3> corners;
+    NearnessPlane plane;
     std::optional<FaceValues::Shading> shading;
     std::vector<FaceValues::Pixel> pixels;
   };
@@ -85,29 +87,34 @@ struct ViewCost::Scratch {
     std::uint32_t face = 0;  // counted from 1; 0: before the collapse
     std::uint32_t next = kInvalid;
   };
-  void begin_view(const SampleRect& pixels_box) {
-    box = pixels_box;
-    spans.clear();
-    first_span.assign(static_cast<std::size_t>(box.height), kInvalid);
-    nearness.resize(static_cast<std::size_t>(box.width));
-    local.resize(static_cast<std::size_t>(box.width));
-  }
-  void add_span(int y, int begin, int end, std::uint32_t face) {
-    std::uint32_t& first = first_span[static_cast<std::size_t>(y - box.top)];
-    spans.push_back({begin, end, face, first});
-    first = static_cast<std::uint32_t>(spans.size() - 1);
-  }
+  /// What all of them cover.
+  struct Row {
+    int begin = std::numeric_limits<int>::max(), end = 0;
+    std::uint32_t first_span = kInvalid;
+  };
+  /// A view of the faces.
+  struct Sight {
+    void add_span(int y, int begin, int end, std::uint32_t face) {
+      Row& row = rows[static_cast<std::size_t>(y - top)];
+      row.begin = std::min(row.begin, begin);
+      row.end = std::max(row.end, end);
+      spans.push_back({begin, end, face, row.first_span});
+      row.first_span = static_cast<std::uint32_t>(spans.size() - 1);
+    }
+
+    std::vector<Seen> seen;  // [#faces] or more
+    int top = 0;
+    std::vector<Row> rows;    // from there on
+    std::vector<Span> spans;  // in each row by face
+  };
+  Sight& sight(std::size_t view) { return sights[view % 2]; }
 
   std::vector<std::uint32_t> changed_by;  // [#shown faces + 1], the last collapse that changes them
   std::uint32_t collapse = 0;
   std::vector<LocalFace> faces;                // by shown number
   std::vector<std::optional<FaceLook>> looks;  // [#faces]
-  std::array<std::vector<Seen>, 2> seen;       // [#faces] or more, in a view and the next
-  SampleRect box;
-  std::vector<Span> spans;
-  std::vector<std::uint32_t> first_span;  // [#rows of the box] in `spans`, by face
-  std::vector<NearnessPlane> planes;      // [#faces], of those that are seen after
-  // Of a row of the box:
+  std::array<Sight, 2> sights;                 // of a view and the next
+  // Of a row of the view, from the first pixel that is covered:
   std::vector<std::uint32_t> local;      // the nearest face after the collapse, counted from 1,
   std::vector<float> nearness;           // and how near it is
   std::vector<std::uint32_t> values;     // of pixels that are shaded
@@ -159,7 +166,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
 }
 
 std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
-  return std::make_shared<Scratch>(shown_.face_count(),
+  return std::make_shared<Scratch>(shown_.face_count(), static_cast<std::size_t>(views_[0].lists.width()),
                                    measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
 }
 
@@ -290,21 +297,14 @@ void ViewCost::add_change(double limit, Scratch& scratch, PartialChange& part) c
   // Of equally near ones the smaller number is in front: it comes first.
   std::sort(scratch.faces.begin(), scratch.faces.end(),
             [](const LocalFace& x, const LocalFace& y) { return x.shown < y.shown; });
-  for (std::vector<Scratch::Seen>& seen : scratch.seen) {
-    if (seen.size() < scratch.faces.size()) seen.resize(scratch.faces.size());
+  for (Scratch::Sight& sight : scratch.sights) {
+    if (sight.seen.size() < scratch.faces.size()) sight.seen.resize(scratch.faces.size());
   }
   if (is_whole(part)) return;
-  SampleRect next = look_at(part.views, scratch);
+  look_at(part.views, scratch);
   do {
     const std::size_t v = part.views++;
-    const SampleRect box = next;
-    if (!is_whole(part)) {  // most of the time would go into waiting for memory
-      next = look_at(part.views, scratch);
-      fetch(part.views, next);
-    }
-    if (box.width == 0) continue;
-    scratch.begin_view(box);
-    lay_over(v, scratch);
+    if (!is_whole(part)) look_at(part.views, scratch);  // while its pixels come, this view is looked at
     part.sum += measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
   } while (!is_whole(part) && amount(part) <= limit);
 }
@@ -354,103 +354,86 @@ ViewCost::LocalFace ViewCost::local_face(const ShownInstance& showing, std::uint
   return local;
 }
 
-/// Notes how a view sees the faces, before and after. The box of the pixels that they may cover, without
-/// width if there are none.
-SampleRect ViewCost::look_at(std::size_t view, Scratch& scratch) const {
-  std::int32_t left = std::numeric_limits<std::int32_t>::max(),
-               right = std::numeric_limits<std::int32_t>::min();
-  std::int32_t top = left, bottom = right;
-  const auto is_seen = [&](const LocalFace& local, const std::array<const ScreenVertex*, 3>& v,
-                           std::array<ScreenVertex, 3>& corners) {
-    corners = {v[0][view], v[1][view], v[2][view]};
-    if (!ShownSurface::is_seen(corners, local.double_sided, local.showing->mirrored)) return false;
-    for (const ScreenVertex& c : corners) {
-      left = std::min(left, c.x);
-      right = std::max(right, c.x);
-      top = std::min(top, c.y);
-      bottom = std::max(bottom, c.y);
-    }
+/// Notes how a view sees the faces and what they cover, before and after, and starts to load these pixels.
+void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
+  const FragmentLists& lists = views_[view].lists;
+  Scratch::Sight& sight = scratch.sight(view);
+  std::int32_t top = std::numeric_limits<std::int32_t>::max(), bottom = 0;
+  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v) {
+    if (!ShownSurface::is_seen(v, local.double_sided, local.showing->mirrored)) return false;
+    const auto [low, high] = std::minmax({v[0].y, v[1].y, v[2].y});
+    top = std::min(top, low);
+    bottom = std::max(bottom, high);
     return true;
+  };
+  const auto corners = [&](const std::array<const ScreenVertex*, 3>& v) {
+    return std::array<ScreenVertex, 3>{v[0][view], v[1][view], v[2][view]};
   };
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
     const LocalFace& local = scratch.faces[i];
-    Scratch::Seen& seen = scratch.seen[view % 2][i];
-    seen.before = is_seen(local, local.before, seen.corners);
-    seen.after = !local.goes && is_seen(local, local.after, seen.corners);
+    Scratch::Seen& seen = sight.seen[i];
+    seen.before = is_seen(local, corners(local.before));
+    seen.corners = corners(local.after);
+    seen.after = !local.goes && is_seen(local, seen.corners);
     seen.shading.reset();
     seen.pixels.clear();
   }
-  if (left > right) return {};
-  const SampleRect whole = views_[view].lists.rect();
-  const int x0 = std::max(left >> kSubsampleBits, 0), y0 = std::max(top >> kSubsampleBits, 0);
-  const int x1 = std::min((right >> kSubsampleBits) + 1, whole.width),
-            y1 = std::min((bottom >> kSubsampleBits) + 1, whole.height);
-  return x0 < x1 && y0 < y1 ? SampleRect{x0, y0, x1 - x0, y1 - y0} : SampleRect{};
-}
-
-/// Starts to load the pixels of a box.
-void ViewCost::fetch(std::size_t view, const SampleRect& box) const {
-  constexpr int kPerLine = 2;
-  const FragmentLists& lists = views_[view].lists;
-  for (int y = box.top; y < box.top + box.height; ++y) {
-    for (int x = box.left; x < box.left + box.width; x += kPerLine) prefetch(&lists.front(lists.pixel(x, y)));
-  }
-}
-
-/// Finds the pixels of a view that the faces cover before or after.
-void ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
-  const SampleRect whole = views_[view].lists.rect();
-  scratch.planes.clear();
-  scratch.planes.resize(scratch.faces.size());
-  for (std::size_t i = scratch.faces.size(); i-- > 0;) {
-    const LocalFace& local = scratch.faces[i];
-    const Scratch::Seen& seen = scratch.seen[view % 2][i];
+  sight.top = std::max(top >> kSubsampleBits, 0);
+  const int end = std::min((bottom >> kSubsampleBits) + 1, lists.height());
+  sight.rows.assign(static_cast<std::size_t>(std::max(end - sight.top, 0)), {});
+  sight.spans.clear();
+  if (sight.rows.empty()) return;
+  for (std::size_t i = scratch.faces.size(); i-- > 0;) {  // the last comes first in a row's list
+    Scratch::Seen& seen = sight.seen[i];
     if (seen.before) {
-      for_spans({local.before[0][view], local.before[1][view], local.before[2][view]}, whole,
-                [&](int y, int begin, int end, const NearnessPlane&) { scratch.add_span(y, begin, end, 0); });
+      for_spans(corners(scratch.faces[i].before), lists.rect(),
+                [&](int y, int x0, int x1, const NearnessPlane&) { sight.add_span(y, x0, x1, 0); });
     }
     if (!seen.after) continue;
-    for_spans(seen.corners, whole, [&](int y, int begin, int end, const NearnessPlane& plane) {
-      scratch.planes[i] = plane;
-      scratch.add_span(y, begin, end, static_cast<std::uint32_t>(i + 1));
+    for_spans(seen.corners, lists.rect(), [&](int y, int x0, int x1, const NearnessPlane& plane) {
+      seen.plane = plane;
+      sight.add_span(y, x0, x1, static_cast<std::uint32_t>(i + 1));
     });
+  }
+  constexpr int kPerLine = 2;
+  for (std::size_t r = 0; r < sight.rows.size(); ++r) {
+    const Scratch::Row& row = sight.rows[r];
+    for (int x = row.begin; x < row.end; x += kPerLine)
+      prefetch(&lists.front(lists.pixel(x, sight.top + static_cast<int>(r))));
   }
 }
 
-/// Finds what is nearest after the collapse in a row, given its first span: the pixels [first, last).
-std::pair<int, int> ViewCost::lay_row(std::size_t view, int y, std::uint32_t span, Scratch& scratch) const {
-  int first = std::numeric_limits<int>::max(), last = 0;
-  for (std::uint32_t s = span; s != kInvalid; s = scratch.spans[s].next) {
-    first = std::min(first, scratch.spans[s].begin);
-    last = std::max(last, scratch.spans[s].end);
-  }
-  const auto count = static_cast<std::size_t>(last - first);
+/// Finds what is nearest after the collapse in row r of those that are covered.
+void ViewCost::lay_row(std::size_t view, std::size_t r, Scratch& scratch) const {
+  const Scratch::Sight& sight = scratch.sight(view);
+  const Scratch::Row& row = sight.rows[r];
+  const int y = sight.top + static_cast<int>(r);
+  const auto count = static_cast<std::size_t>(row.end - row.begin);
   std::fill_n(scratch.nearness.data(), count, -std::numeric_limits<float>::infinity());
   std::fill_n(scratch.local.data(), count, 0u);
-  for (std::uint32_t s = span; s != kInvalid; s = scratch.spans[s].next) {
-    const Scratch::Span& at = scratch.spans[s];
+  for (std::uint32_t s = row.first_span; s != kInvalid; s = sight.spans[s].next) {
+    const Scratch::Span& at = sight.spans[s];
     if (at.face == 0) continue;
-    const NearnessPlane& plane = scratch.planes[at.face - 1];
+    const NearnessPlane& plane = sight.seen[at.face - 1].plane;
     if (!scratch.faces[at.face - 1].has_holes) {
-      lay_span(plane, y, first, at.begin, at.end, at.face, scratch.nearness.data(), scratch.local.data());
+      lay_span(plane, y, row.begin, at.begin, at.end, at.face, scratch.nearness.data(), scratch.local.data());
       continue;
     }
     scratch.values.resize(static_cast<std::size_t>(at.end - at.begin));
     shading(scratch, at.face - 1, view).row(y, at.begin, at.end, scratch.values.data());
     plane.for_row(y, at.begin, at.end, [&](int x, float n) {
       if (scratch.values[static_cast<std::size_t>(x - at.begin)] == FragmentLists::kHole) return;
-      const auto k = static_cast<std::size_t>(x - first);
+      const auto k = static_cast<std::size_t>(x - row.begin);
       if (!(n > scratch.nearness[k])) return;
       scratch.nearness[k] = n;
       scratch.local[k] = at.face;
     });
   }
-  return {first, last};
 }
 
 /// What face i would show, made when it is first asked for.
 const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::size_t i, std::size_t view) const {
-  Scratch::Seen& seen = scratch.seen[view % 2][i];
+  Scratch::Seen& seen = scratch.sight(view).seen[i];
   if (!seen.shading) {
     const LocalFace& local = scratch.faces[i];
     std::optional<FaceLook>& look = scratch.looks[i];
@@ -464,15 +447,15 @@ const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::size_t i, st
 template <class Change>
 void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) const {
   const FragmentLists& lists = views_[v].lists;
-  std::vector<Scratch::Seen>& seen = scratch.seen[v % 2];
-  for (int row = 0; row < scratch.box.height; ++row) {
-    const std::uint32_t span = scratch.first_span[static_cast<std::size_t>(row)];
-    if (span == kInvalid) continue;
-    const int y = scratch.box.top + row;
-    const auto [first, last] = lay_row(v, y, span, scratch);
+  Scratch::Sight& sight = scratch.sight(v);
+  for (std::size_t r = 0; r < sight.rows.size(); ++r) {
+    const Scratch::Row& row = sight.rows[r];
+    if (row.first_span == kInvalid) continue;
+    const int y = sight.top + static_cast<int>(r);
+    lay_row(v, r, scratch);
     const FrontPixel* const fronts = &lists.front(lists.pixel(0, y));
-    for (int x = first; x < last; ++x) {
-      const auto k = static_cast<std::size_t>(x - first);
+    for (int x = row.begin; x < row.end; ++x) {
+      const auto k = static_cast<std::size_t>(x - row.begin);
       const FrontPixel& front = fronts[x];
       const bool goes = scratch.changes(front.first);
       const float nearness = scratch.nearness[k], bound = goes ? front.second.nearness : front.first.nearness;
@@ -484,11 +467,12 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
         if (!is_first && goes) change(front, stays.value);
       }
       if (is_first)
-        seen[local - 1].pixels.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+        sight.seen[local - 1].pixels.push_back(
+            {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
     }
   }
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
-    const std::vector<FaceValues::Pixel>& pixels = seen[i].pixels;
+    const std::vector<FaceValues::Pixel>& pixels = sight.seen[i].pixels;
     if (pixels.empty()) continue;
     scratch.values.resize(pixels.size());
     shading(scratch, i, v).at(pixels, scratch.values.data());
