@@ -81,8 +81,7 @@ void expect_same_lists(const ViewCost& ours, const ViewCost& fresh) {
   for (std::size_t v = 0; v < ours.view_count(); ++v) {
     const FragmentLists &x = ours.fragments(v), &y = fresh.fragments(v);
     ASSERT_EQ(x.size(), y.size());
-    for (std::size_t p = 0; p < 64 * 64; ++p)
-      ASSERT_TRUE(std::equal(x.at(p).begin(), x.at(p).end(), y.at(p).begin(), y.at(p).end())) << p;
+    for (std::size_t p = 0; p < 64 * 64; ++p) ASSERT_EQ(x.at(p), y.at(p)) << p;
   }
 }
 

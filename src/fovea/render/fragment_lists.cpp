@@ -4,7 +4,7 @@ namespace fovea {
 
 std::size_t FragmentLists::bytes() const {
   std::size_t sum =
-      pool_.capacity() * sizeof(Fragment) + pixels_.size() * (sizeof(List) + sizeof(FrontPixel));
+      pool_.capacity() * sizeof(Fragment) + fronts_.size() * (sizeof(List) + sizeof(FrontPixel));
   for (const auto& rooms : free_) sum += rooms.capacity() * sizeof(rooms[0]);
   return sum;
 }
@@ -32,33 +32,46 @@ void FragmentLists::resize(List& list, std::uint32_t size) {
   list.size = size;
 }
 
-void FragmentLists::add(std::size_t pixel, const Fragment& fragment) {
-  List& list = pixels_[pixel];
+std::vector<Fragment> FragmentLists::at(std::size_t pixel) const {
+  std::vector<Fragment> all;
+  for (const Fragment& fragment : {fronts_[pixel].first, fronts_[pixel].second}) {
+    if (fragment.triangle != kInvalid) all.push_back(fragment);
+  }
+  const std::span<const Fragment> others = behind(pixel);
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
+void FragmentLists::add_behind(std::size_t pixel, const Fragment& fragment) {
+  List& list = behind_[pixel];
   std::uint32_t at = list.size;
   resize(list, list.size + 1);
   Fragment* const fragments = pool_.data() + list.begin;
   for (; at > 0 && fragment.is_before(fragments[at - 1]); --at) fragments[at] = fragments[at - 1];
   fragments[at] = fragment;
-  if (at < 2) set_front(pixel);
-  ++size_;
 }
 
-void FragmentLists::set_front(std::size_t pixel) {
-  const std::span<const Fragment> list = at(pixel);
-  fronts_[pixel].first = !list.empty() ? list[0] : background_;
-  fronts_[pixel].second = list.size() > 1 ? list[1] : background_;
-}
-
-void FragmentLists::drop(std::size_t pixel, std::uint32_t triangle) {
-  List& list = pixels_[pixel];
+/// False if it is not there.
+bool FragmentLists::drop_behind(std::size_t pixel, std::uint32_t triangle) {
+  List& list = behind_[pixel];
   Fragment* const fragments = pool_.data() + list.begin;
   std::uint32_t at = 0;
   while (at < list.size && fragments[at].triangle != triangle) ++at;
-  if (at == list.size) return;  // a hole
+  if (at == list.size) return false;
   std::copy(fragments + at + 1, fragments + list.size, fragments + at);
   resize(list, list.size - 1);
-  if (at < 2) set_front(pixel);
-  --size_;
+  return true;
+}
+
+/// Takes the nearest out, which is the background if there is none.
+Fragment FragmentLists::take_behind(std::size_t pixel) {
+  List& list = behind_[pixel];
+  if (list.size == 0) return background_;
+  Fragment* const fragments = pool_.data() + list.begin;
+  const Fragment nearest = fragments[0];
+  std::copy(fragments + 1, fragments + list.size, fragments);
+  resize(list, list.size - 1);
+  return nearest;
 }
 
 }  // namespace fovea

@@ -36,10 +36,11 @@ struct alignas(32) FrontPixel {
 /// All triangles behind each pixel of a view, nearest first, hidden ones among them: what is visible after a
 /// triangle goes is the next in the list, and nothing has to be drawn again.
 ///
-/// The lists depend on the triangles that are in them, not on the order in which they came. A fragment takes
-/// 12 bytes, a pixel 40; lists lie in one pool in rooms of powers of two, so that a list takes at most twice
-/// what its fragments need. Rooms that lists have outgrown wait for others: all together takes about two to
-/// four times, at most nine times what the lists need when each is at its longest.
+/// The lists depend on the triangles that are in them, not on the order in which they came. A pixel takes 40
+/// bytes, its two nearest fragments among them, each further fragment 12. These lie in one pool in rooms of
+/// powers of two, so that they take at most twice what they need. Rooms that they have outgrown wait for
+/// others: all together takes about two to four times, at most nine times what the fragments need when each
+/// list is at its longest.
 class FragmentLists {
  public:
   /// `background` is the value where there is no triangle.
@@ -47,8 +48,9 @@ class FragmentLists {
       : width_(width),
         height_(height),
         background_{-std::numeric_limits<float>::infinity(), kInvalid, background},
-        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
-        fronts_(pixels_.size(), {background_, background_, {}}),
+        fronts_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                {background_, background_, {}}),
+        behind_(fronts_.size()),
         row_(static_cast<std::size_t>(width)) {}
 
   int width() const { return width_; }
@@ -58,12 +60,14 @@ class FragmentLists {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  /// The fragments behind a pixel, nearest first. Valid until something is inserted.
-  std::span<const Fragment> at(std::size_t pixel) const {
-    return {pool_.data() + pixels_[pixel].begin, pixels_[pixel].size};
-  }
-  /// The nearest of them; the background is infinitely far and without a triangle.
+  /// The nearest fragments of a pixel; the background is infinitely far and without a triangle.
   const FrontPixel& front(std::size_t pixel) const { return fronts_[pixel]; }
+  /// Those behind them, nearest first. Valid until something is inserted.
+  std::span<const Fragment> behind(std::size_t pixel) const {
+    return {pool_.data() + behind_[pixel].begin, behind_[pixel].size};
+  }
+  /// All of them, nearest first.
+  std::vector<Fragment> at(std::size_t pixel) const;
   std::array<std::uint32_t, 2>& notes(std::size_t pixel) { return fronts_[pixel].notes; }
   const Fragment& background() const { return background_; }
   /// How many fragments there are in all.
@@ -123,17 +127,46 @@ class FragmentLists {
 
   void add(std::size_t pixel, const Fragment& fragment);
   void drop(std::size_t pixel, std::uint32_t triangle);
-  void set_front(std::size_t pixel);
+  void add_behind(std::size_t pixel, const Fragment& fragment);
+  bool drop_behind(std::size_t pixel, std::uint32_t triangle);
+  Fragment take_behind(std::size_t pixel);
   void resize(List& list, std::uint32_t size);
 
   int width_, height_;
   std::size_t size_ = 0;
   Fragment background_;
-  std::vector<List> pixels_;
-  std::vector<FrontPixel> fronts_;  // [#pixels], the first of each list once more
+  std::vector<FrontPixel> fronts_;  // [#pixels]
+  std::vector<List> behind_;        // [#pixels], what comes after the two in front
   std::vector<std::uint32_t> row_;  // scratch of insert
   std::vector<Fragment> pool_;
   std::array<std::vector<std::uint32_t>, 32> free_;  // [log2 of room], where rooms begin
 };
+
+inline void FragmentLists::add(std::size_t pixel, const Fragment& fragment) {
+  const auto is_free = [](const Fragment& place) { return place.triangle == kInvalid; };
+  FrontPixel& front = fronts_[pixel];
+  ++size_;
+  if (!is_free(front.second) && !fragment.is_before(front.second)) {
+    add_behind(pixel, fragment);
+    return;
+  }
+  if (!is_free(front.second)) add_behind(pixel, front.second);
+  const bool is_first = is_free(front.first) || fragment.is_before(front.first);
+  front.second = is_first ? front.first : fragment;
+  if (is_first) front.first = fragment;
+}
+
+inline void FragmentLists::drop(std::size_t pixel, std::uint32_t triangle) {
+  FrontPixel& front = fronts_[pixel];
+  if (front.first.triangle == triangle) {
+    front.first = front.second;
+  } else if (front.second.triangle != triangle) {
+    // Or a hole.
+    if (front.second.triangle != kInvalid && drop_behind(pixel, triangle)) --size_;
+    return;
+  }
+  if (front.second.triangle != kInvalid) front.second = take_behind(pixel);
+  --size_;
+}
 
 }  // namespace fovea

@@ -20,8 +20,10 @@ struct SampleRect {
 
 /// Nearness of a triangle over the samples of a rectangle; never beyond that of its corners.
 struct NearnessPlane {
-  double at_0, dx, dy;
-  float low, high;
+  double at_0 = 0, dx = 0, dy = 0;
+  float low = 0, high = 0;
+
+  NearnessPlane() = default;  ///< Of nothing.
 
   /// `v` is clockwise; `double_area` is twice its area in screen units.
   NearnessPlane(const std::array<ScreenVertex, 3>& v, double double_area, const SampleRect& rect) {

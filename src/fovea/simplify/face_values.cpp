@@ -316,9 +316,10 @@ void FaceValues::Shading::shade(const Samples& at, WideWords& out) const {
   if (look_.regions != nullptr) {
     on_surface(region_uv_, 0, u);
     on_surface(region_uv_, 1, v);
-    for (std::size_t i = 0; i < kWide; ++i)
-      out[i] = alpha[i] >> 24 < cutoff_ ? FragmentLists::kHole
-                                        : look_.regions->region_at(look_.face, {u[i], v[i]});
+    look_.regions->regions_at(look_.face, u, v, out);
+    for (std::size_t i = 0; i < kWide; ++i) {
+      if (alpha[i] >> 24 < cutoff_) out[i] = FragmentLists::kHole;
+    }
     return;
   }
   if (look_.is_tinted || light_ != nullptr) light_up(at, color);

@@ -8,6 +8,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/prefetch.h"
+#include "fovea/base/wide.h"
 
 namespace fovea {
 
@@ -27,6 +28,19 @@ double log2_of(double x) {
   return exponent + 2 * s * sum * 1.4426950408889634;
 }
 
+/// Notes a face at the pixels [begin, end) of a row where it is nearer than what is noted of them from x0 on.
+FOVEA_WIDE void lay_span(const NearnessPlane& plane, int y, int x0, int begin, int end, std::uint32_t number,
+                         float* __restrict nearness, std::uint32_t* __restrict nearest) {
+  const auto row = static_cast<float>(plane.at_0 + plane.dy * y), slope = static_cast<float>(plane.dx);
+  const float low = plane.low, high = plane.high;
+  for (int x = begin; x < end; ++x) {
+    const float n = std::clamp(row + slope * static_cast<float>(x), low, high);
+    const float known = nearness[x - x0];
+    nearest[x - x0] = n > known ? number : nearest[x - x0];
+    nearness[x - x0] = n > known ? n : known;
+  }
+}
+
 }  // namespace
 
 /// A face around the edge, in one showing.
@@ -40,12 +54,14 @@ struct ViewCost::LocalFace {
 
 /// The faces around an edge and the pixels that they cover, before and after its collapse.
 struct ViewCost::Scratch {
-  explicit Scratch(std::size_t shown_faces) : changed_by(shown_faces, 0) {}
+  Scratch(std::size_t shown_faces, std::size_t width, std::size_t value_count)
+      : changed_by(shown_faces + 1, 0), local(width), nearness(width), delta(value_count, 0) {}
 
-  /// A face as the present view would see it, and the pixels in which it would be in front.
+  /// A face as a view would see it, and the pixels in which it would be in front.
   struct Seen {
     bool before = false, after = false;  // whether the view sees it at all
     std::array<ScreenVertex, 3> corners;
+    NearnessPlane plane;
     std::optional<FaceValues::Shading> shading;
     std::vector<FaceValues::Pixel> pixels;
   };
@@ -61,37 +77,51 @@ struct ViewCost::Scratch {
     looks.emplace_back();
   }
   /// Whether the collapse changes the face of a fragment; never the background.
-  bool changes(const Fragment& fragment) const {
-    return fragment.triangle != kInvalid && changed_by[fragment.triangle] == collapse;
+  bool changes(const Fragment& fragment) const {  // the last in `changed_by` stands for no triangle
+    return changed_by[std::min<std::size_t>(fragment.triangle, changed_by.size() - 1)] == collapse;
   }
 
-  /// Pixels of a view inside `box` from now on, none touched.
-  void begin_view(const SampleRect& pixels_box) {
-    box = pixels_box;
-    const std::size_t count = static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height);
-    touched.assign(count, 0);
-    local.assign(count, 0);
-    nearness.assign(count, -std::numeric_limits<float>::infinity());
-  }
-  /// Where pixel (x, y) of the view is in the box.
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y - box.top) * static_cast<std::size_t>(box.width) +
-           static_cast<std::size_t>(x - box.left);
-  }
+  /// What a face covers of a row.
+  struct Span {
+    int begin = 0, end = 0;
+    std::uint32_t face = 0;  // counted from 1; 0: before the collapse
+    std::uint32_t next = kInvalid;
+  };
+  /// What all of them cover.
+  struct Row {
+    int begin = std::numeric_limits<int>::max(), end = 0;
+    std::uint32_t first_span = kInvalid;
+  };
+  /// A view of the faces.
+  struct Sight {
+    void add_span(int y, int begin, int end, std::uint32_t face) {
+      Row& row = rows[static_cast<std::size_t>(y - top)];
+      row.begin = std::min(row.begin, begin);
+      row.end = std::max(row.end, end);
+      spans.push_back({begin, end, face, row.first_span});
+      row.first_span = static_cast<std::uint32_t>(spans.size() - 1);
+    }
 
-  std::vector<std::uint32_t> changed_by;  // [#shown faces], the last collapse that changes them
+    std::vector<Seen> seen;  // [#faces] or more
+    int top = 0;
+    std::vector<Row> rows;    // from there on
+    std::vector<Span> spans;  // in each row by face
+  };
+  Sight& sight(std::size_t view) { return sights[view % 2]; }
+
+  std::vector<std::uint32_t> changed_by;  // [#shown faces + 1], the last collapse that changes them
   std::uint32_t collapse = 0;
   std::vector<LocalFace> faces;                // by shown number
   std::vector<std::optional<FaceLook>> looks;  // [#faces]
-  std::array<std::vector<Seen>, 2> seen;       // [#faces] or more, in a view and the next
-  SampleRect box;
-  std::vector<std::uint8_t> touched;     // [#pixels of the box], whether a face covers it, before or after;
+  std::array<Sight, 2> sights;                 // of a view and the next
+  // Of a row of the view, from the first pixel that is covered:
   std::vector<std::uint32_t> local;      // the nearest face after the collapse, counted from 1,
   std::vector<float> nearness;           // and how near it is
   std::vector<std::uint32_t> values;     // of pixels that are shaded
   std::vector<PlannedCollapse> planned;  // [#showings of the slot]
   std::vector<ScreenVertex> merged;      // [#showings of the slot][#views]
-  std::vector<std::pair<std::uint32_t, int>> deltas;
+  std::vector<int> delta;                // [#values], pixels more after the collapse (entropy)
+  std::vector<std::uint32_t> in_delta;   // where that may not be 0
 };
 
 ViewCost::~ViewCost() = default;
@@ -136,7 +166,8 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
 }
 
 std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
-  return std::make_shared<Scratch>(shown_.face_count());
+  return std::make_shared<Scratch>(shown_.face_count(), static_cast<std::size_t>(views_[0].lists.width()),
+                                   measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
 }
 
 std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const ShownInstance& showing,
@@ -266,21 +297,14 @@ void ViewCost::add_change(double limit, Scratch& scratch, PartialChange& part) c
   // Of equally near ones the smaller number is in front: it comes first.
   std::sort(scratch.faces.begin(), scratch.faces.end(),
             [](const LocalFace& x, const LocalFace& y) { return x.shown < y.shown; });
-  for (std::vector<Scratch::Seen>& seen : scratch.seen) {
-    if (seen.size() < scratch.faces.size()) seen.resize(scratch.faces.size());
+  for (Scratch::Sight& sight : scratch.sights) {
+    if (sight.seen.size() < scratch.faces.size()) sight.seen.resize(scratch.faces.size());
   }
   if (is_whole(part)) return;
-  SampleRect next = look_at(part.views, scratch);
+  look_at(part.views, scratch);
   do {
     const std::size_t v = part.views++;
-    const SampleRect box = next;
-    if (!is_whole(part)) {  // most of the time would go into waiting for memory
-      next = look_at(part.views, scratch);
-      fetch(part.views, next);
-    }
-    if (box.width == 0) continue;
-    scratch.begin_view(box);
-    lay_over(v, scratch);
+    if (!is_whole(part)) look_at(part.views, scratch);  // while its pixels come, this view is looked at
     part.sum += measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
   } while (!is_whole(part) && amount(part) <= limit);
 }
@@ -330,88 +354,86 @@ ViewCost::LocalFace ViewCost::local_face(const ShownInstance& showing, std::uint
   return local;
 }
 
-/// Notes how a view sees the faces, before and after. The box of the pixels that they may cover, without
-/// width if there are none.
-SampleRect ViewCost::look_at(std::size_t view, Scratch& scratch) const {
-  std::int32_t left = std::numeric_limits<std::int32_t>::max(),
-               right = std::numeric_limits<std::int32_t>::min();
-  std::int32_t top = left, bottom = right;
-  const auto is_seen = [&](const LocalFace& local, const std::array<const ScreenVertex*, 3>& v,
-                           std::array<ScreenVertex, 3>& corners) {
-    corners = {v[0][view], v[1][view], v[2][view]};
-    if (!ShownSurface::is_seen(corners, local.double_sided, local.showing->mirrored)) return false;
-    for (const ScreenVertex& c : corners) {
-      left = std::min(left, c.x);
-      right = std::max(right, c.x);
-      top = std::min(top, c.y);
-      bottom = std::max(bottom, c.y);
-    }
+/// Notes how a view sees the faces and what they cover, before and after, and starts to load these pixels.
+void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
+  const FragmentLists& lists = views_[view].lists;
+  Scratch::Sight& sight = scratch.sight(view);
+  std::int32_t top = std::numeric_limits<std::int32_t>::max(), bottom = 0;
+  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v) {
+    if (!ShownSurface::is_seen(v, local.double_sided, local.showing->mirrored)) return false;
+    const auto [low, high] = std::minmax({v[0].y, v[1].y, v[2].y});
+    top = std::min(top, low);
+    bottom = std::max(bottom, high);
     return true;
+  };
+  const auto corners = [&](const std::array<const ScreenVertex*, 3>& v) {
+    return std::array<ScreenVertex, 3>{v[0][view], v[1][view], v[2][view]};
   };
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
     const LocalFace& local = scratch.faces[i];
-    Scratch::Seen& seen = scratch.seen[view % 2][i];
-    seen.before = is_seen(local, local.before, seen.corners);
-    seen.after = !local.goes && is_seen(local, local.after, seen.corners);
+    Scratch::Seen& seen = sight.seen[i];
+    seen.before = is_seen(local, corners(local.before));
+    seen.corners = corners(local.after);
+    seen.after = !local.goes && is_seen(local, seen.corners);
     seen.shading.reset();
     seen.pixels.clear();
   }
-  if (left > right) return {};
-  const SampleRect whole = views_[view].lists.rect();
-  const int x0 = std::max(left >> kSubsampleBits, 0), y0 = std::max(top >> kSubsampleBits, 0);
-  const int x1 = std::min((right >> kSubsampleBits) + 1, whole.width),
-            y1 = std::min((bottom >> kSubsampleBits) + 1, whole.height);
-  return x0 < x1 && y0 < y1 ? SampleRect{x0, y0, x1 - x0, y1 - y0} : SampleRect{};
-}
-
-/// Starts to load the pixels of a box.
-void ViewCost::fetch(std::size_t view, const SampleRect& box) const {
-  constexpr int kPerLine = 2;
-  const FragmentLists& lists = views_[view].lists;
-  for (int y = box.top; y < box.top + box.height; ++y) {
-    for (int x = box.left; x < box.left + box.width; x += kPerLine) prefetch(&lists.front(lists.pixel(x, y)));
-  }
-}
-
-/// Finds the pixels of a view that the faces cover before or after, and the nearest after.
-void ViewCost::lay_over(std::size_t view, Scratch& scratch) const {
-  for (std::size_t i = 0; i < scratch.faces.size(); ++i) lay_over(view, i, scratch);
-}
-
-/// The same of face i alone.
-void ViewCost::lay_over(std::size_t view, std::size_t i, Scratch& scratch) const {
-  const LocalFace& local = scratch.faces[i];
-  const Scratch::Seen& seen = scratch.seen[view % 2][i];
-  const SampleRect whole = views_[view].lists.rect();
-  if (seen.before) {
-    for_spans({local.before[0][view], local.before[1][view], local.before[2][view]}, whole,
-              [&](int y, int begin, int end, const NearnessPlane&) {
-                std::fill_n(scratch.touched.data() + scratch.at(begin, y), end - begin, std::uint8_t{1});
-              });
-  }
-  if (!seen.after) return;
-  for_spans(seen.corners, whole, [&](int y, int begin, int end, const NearnessPlane& plane) {
-    const std::size_t first = scratch.at(begin, y);
-    if (local.has_holes) {
-      scratch.values.resize(static_cast<std::size_t>(whole.width));
-      shading(scratch, i, view).row(y, begin, end, scratch.values.data());
+  sight.top = std::max(top >> kSubsampleBits, 0);
+  const int end = std::min((bottom >> kSubsampleBits) + 1, lists.height());
+  sight.rows.assign(static_cast<std::size_t>(std::max(end - sight.top, 0)), {});
+  sight.spans.clear();
+  if (sight.rows.empty()) return;
+  for (std::size_t i = scratch.faces.size(); i-- > 0;) {  // the last comes first in a row's list
+    Scratch::Seen& seen = sight.seen[i];
+    if (seen.before) {
+      for_spans(corners(scratch.faces[i].before), lists.rect(),
+                [&](int y, int x0, int x1, const NearnessPlane&) { sight.add_span(y, x0, x1, 0); });
     }
-    float* const nearness = scratch.nearness.data() + first;
-    std::uint32_t* const nearest = scratch.local.data() + first;
-    std::fill_n(scratch.touched.data() + first, end - begin, std::uint8_t{1});
-    const auto number = static_cast<std::uint32_t>(i + 1);
-    plane.for_row(y, begin, end, [&](int x, float n) {
-      const std::size_t k = static_cast<std::size_t>(x - begin);
-      if (local.has_holes && scratch.values[k] == FragmentLists::kHole) return;
-      nearest[k] = n > nearness[k] ? number : nearest[k];
-      nearness[k] = n > nearness[k] ? n : nearness[k];
+    if (!seen.after) continue;
+    for_spans(seen.corners, lists.rect(), [&](int y, int x0, int x1, const NearnessPlane& plane) {
+      seen.plane = plane;
+      sight.add_span(y, x0, x1, static_cast<std::uint32_t>(i + 1));
     });
-  });
+  }
+  constexpr int kPerLine = 2;
+  for (std::size_t r = 0; r < sight.rows.size(); ++r) {
+    const Scratch::Row& row = sight.rows[r];
+    for (int x = row.begin; x < row.end; x += kPerLine)
+      prefetch(&lists.front(lists.pixel(x, sight.top + static_cast<int>(r))));
+  }
+}
+
+/// Finds what is nearest after the collapse in row r of those that are covered.
+void ViewCost::lay_row(std::size_t view, std::size_t r, Scratch& scratch) const {
+  const Scratch::Sight& sight = scratch.sight(view);
+  const Scratch::Row& row = sight.rows[r];
+  const int y = sight.top + static_cast<int>(r);
+  const auto count = static_cast<std::size_t>(row.end - row.begin);
+  std::fill_n(scratch.nearness.data(), count, -std::numeric_limits<float>::infinity());
+  std::fill_n(scratch.local.data(), count, 0u);
+  for (std::uint32_t s = row.first_span; s != kInvalid; s = sight.spans[s].next) {
+    const Scratch::Span& at = sight.spans[s];
+    if (at.face == 0) continue;
+    const NearnessPlane& plane = sight.seen[at.face - 1].plane;
+    if (!scratch.faces[at.face - 1].has_holes) {
+      lay_span(plane, y, row.begin, at.begin, at.end, at.face, scratch.nearness.data(), scratch.local.data());
+      continue;
+    }
+    scratch.values.resize(static_cast<std::size_t>(at.end - at.begin));
+    shading(scratch, at.face - 1, view).row(y, at.begin, at.end, scratch.values.data());
+    plane.for_row(y, at.begin, at.end, [&](int x, float n) {
+      if (scratch.values[static_cast<std::size_t>(x - at.begin)] == FragmentLists::kHole) return;
+      const auto k = static_cast<std::size_t>(x - row.begin);
+      if (!(n > scratch.nearness[k])) return;
+      scratch.nearness[k] = n;
+      scratch.local[k] = at.face;
+    });
+  }
 }
 
 /// What face i would show, made when it is first asked for.
 const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::size_t i, std::size_t view) const {
-  Scratch::Seen& seen = scratch.seen[view % 2][i];
+  Scratch::Seen& seen = scratch.sight(view).seen[i];
   if (!seen.shading) {
     const LocalFace& local = scratch.faces[i];
     std::optional<FaceLook>& look = scratch.looks[i];
@@ -425,26 +447,32 @@ const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::size_t i, st
 template <class Change>
 void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) const {
   const FragmentLists& lists = views_[v].lists;
-  std::vector<Scratch::Seen>& seen = scratch.seen[v % 2];
-  const SampleRect& box = scratch.box;
-  std::size_t k = 0;
-  for (int y = box.top; y < box.top + box.height; ++y) {
-    for (int x = box.left; x < box.left + box.width; ++x, ++k) {
-      if (scratch.touched[k] == 0) continue;
-      const std::size_t p = lists.pixel(x, y);
-      const FrontPixel& front = lists.front(p);
+  Scratch::Sight& sight = scratch.sight(v);
+  for (std::size_t r = 0; r < sight.rows.size(); ++r) {
+    const Scratch::Row& row = sight.rows[r];
+    if (row.first_span == kInvalid) continue;
+    const int y = sight.top + static_cast<int>(r);
+    lay_row(v, r, scratch);
+    const FrontPixel* const fronts = &lists.front(lists.pixel(0, y));
+    for (int x = row.begin; x < row.end; ++x) {
+      const auto k = static_cast<std::size_t>(x - row.begin);
+      const FrontPixel& front = fronts[x];
       const bool goes = scratch.changes(front.first);
-      const Fragment stays = !goes ? front.first : nearest_that_stays(lists, p, scratch);
+      const float nearness = scratch.nearness[k], bound = goes ? front.second.nearness : front.first.nearness;
       const std::uint32_t local = scratch.local[k];
-      if (local != 0 && Fragment{scratch.nearness[k], scratch.faces[local - 1].shown, 0}.is_before(stays)) {
-        seen[local - 1].pixels.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
-      } else if (goes) {
-        change(front, stays.value);
+      bool is_first = nearness > bound;  // whatever of it stays
+      if (!is_first && (goes || (nearness == bound && local != 0))) {
+        const Fragment stays = !goes ? front.first : nearest_that_stays(lists, lists.pixel(x, y), scratch);
+        is_first = local != 0 && Fragment{nearness, scratch.faces[local - 1].shown, 0}.is_before(stays);
+        if (!is_first && goes) change(front, stays.value);
       }
+      if (is_first)
+        sight.seen[local - 1].pixels.push_back(
+            {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
     }
   }
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
-    const std::vector<FaceValues::Pixel>& pixels = seen[i].pixels;
+    const std::vector<FaceValues::Pixel>& pixels = sight.seen[i].pixels;
     if (pixels.empty()) continue;
     scratch.values.resize(pixels.size());
     shading(scratch, i, v).at(pixels, scratch.values.data());
@@ -457,7 +485,7 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
 Fragment ViewCost::nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch) {
   const FrontPixel& front = lists.front(pixel);
   if (!scratch.changes(front.second)) return front.second;
-  for (const Fragment& fragment : lists.at(pixel).subspan(2)) {
+  for (const Fragment& fragment : lists.behind(pixel)) {
     if (!scratch.changes(fragment)) return fragment;
   }
   return lists.background();
@@ -473,26 +501,32 @@ std::int64_t ViewCost::change_of_image(std::size_t v, Scratch& scratch) const {
 
 std::int64_t ViewCost::change_of_entropy(std::size_t v, Scratch& scratch) const {
   const ViewState& view = views_[v];
-  auto& deltas = scratch.deltas;
-  deltas.clear();
   const auto add = [&](std::uint32_t region, int pixels) {
-    for (auto& [known, count] : deltas) {
-      if (known != region) continue;
-      count += pixels;
-      return;
-    }
-    deltas.emplace_back(region, pixels);
+    if (scratch.delta[region] == 0) scratch.in_delta.push_back(region);
+    scratch.delta[region] += pixels;
   };
+  // Neighbours mostly change alike.
+  std::uint32_t from = 0, to = 0;
+  int alike = 0;
   for_changes(v, scratch, [&](const FrontPixel& pixel, std::uint32_t after) {
-    if (pixel.first.value == after) return;
-    add(pixel.first.value, -1);
-    add(after, 1);
+    if (pixel.first.value != from || after != to) {
+      add(from, -alike);
+      add(to, alike);
+      from = pixel.first.value;
+      to = after;
+      alike = 0;
+    }
+    ++alike;
   });
+  add(from, -alike);
+  add(to, alike);
   std::int64_t sum = 0;
-  for (const auto& [region, pixels] : deltas) {
+  for (const std::uint32_t region : scratch.in_delta) {  // one may be there twice
     const std::uint32_t count = view.count[region];
-    sum += n_log_n_[count + static_cast<std::uint32_t>(pixels)] - n_log_n_[count];
+    sum += n_log_n_[count + static_cast<std::uint32_t>(scratch.delta[region])] - n_log_n_[count];
+    scratch.delta[region] = 0;
   }
+  scratch.in_delta.clear();
   return std::abs(sum);
 }
 

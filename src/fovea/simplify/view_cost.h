@@ -111,10 +111,8 @@ class ViewCost {
   LocalFace local_face(const ShownInstance& showing, std::uint32_t f, const PlannedCollapse& planned,
                        const ScreenVertex* merged) const;
   void add_change(double limit, Scratch& scratch, PartialChange& part) const;
-  SampleRect look_at(std::size_t view, Scratch& scratch) const;
-  void fetch(std::size_t view, const SampleRect& box) const;
-  void lay_over(std::size_t view, Scratch& scratch) const;
-  void lay_over(std::size_t view, std::size_t i, Scratch& scratch) const;
+  void look_at(std::size_t view, Scratch& scratch) const;
+  void lay_row(std::size_t view, std::size_t row, Scratch& scratch) const;
   const FaceValues::Shading& shading(Scratch& scratch, std::size_t i, std::size_t view) const;
   static Fragment nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch);
   template <class Change>

@@ -14,7 +14,7 @@ namespace fovea {
 
 namespace {
 
-/// Pixels of all views together: some 16 bytes each.
+/// Pixels of all views together: some 50 bytes each.
 constexpr double kMostPixels = 1 << 27;
 /// Of vertices in the views that pictures of the original are taken in together.
 constexpr std::size_t kMostScreenBytes = std::size_t{1} << 26;

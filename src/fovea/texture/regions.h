@@ -7,6 +7,7 @@
 
 #include "fovea/base/context.h"
 #include "fovea/base/math.h"
+#include "fovea/base/wide.h"
 #include "fovea/model/ids.h"
 #include "fovea/model/model.h"
 #include "fovea/texture/felzenszwalb.h"
@@ -21,10 +22,10 @@ class PartRegions {
  public:
   /// The set of texture coordinates that `region_at` wants; -1 if it looks at none.
   int uv_set() const { return uv_set_; }
-  /// The region of a point of a triangle of the mesh, given the texture coordinates there as the mesh has
+  /// The regions of points of a triangle of the mesh, given the texture coordinates there as the mesh has
   /// them: the material's transform and its sampler's wrapping are applied here, as in pictures without
-  /// filters. What is then not finite, or beyond a million, counts as 0. O(1): a texel is read.
-  std::uint32_t region_at(FaceId face, Vec2f uv) const;
+  /// filters. What is then not finite, or beyond a million, counts as 0. O(1): a texel is read for each.
+  void regions_at(FaceId face, const WideFloats& u, const WideFloats& v, WideWords& out) const;
 
  private:
   friend class RegionFinder;
@@ -47,10 +48,8 @@ class ModelRegions {
   /// How many there are, with the background.
   std::uint32_t count() const { return count_; }
   const PartRegions& part(std::size_t mesh, std::uint32_t part) const { return parts_[mesh][part]; }
-  /// The region of a point of a triangle; `uv` as `PartRegions::region_at` wants it.
-  std::uint32_t region_at(std::size_t mesh, FaceId face, Vec2f uv) const {
-    return part(mesh, model_->meshes[mesh].surface.face_part[face.index()]).region_at(face, uv);
-  }
+  /// The region of a point of a triangle; `uv` as `PartRegions::regions_at` wants it.
+  std::uint32_t region_at(std::size_t mesh, FaceId face, Vec2f uv) const;
 
  private:
   friend class RegionFinder;
