@@ -50,7 +50,7 @@ TEST(FillUndrawn, GoesOnAlongABorderAsItEnds) {
 TEST(GrowDrawn, TakesTheEightAround) {
   std::vector<std::uint8_t> drawn(5 * 4, 0);
   drawn[5 * 1 + 4] = 1;
-  grow_drawn(drawn, 5, 4);
+  grow_drawn(drawn, 5, 4, Context());
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 5; ++x)
       EXPECT_EQ(drawn[static_cast<std::size_t>(5 * y + x)] != 0, x >= 3 && y <= 2) << x << ' ' << y;

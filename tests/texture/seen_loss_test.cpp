@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fovea/texture/bake.h"
 #include "support/meshes.h"
 #include "support/textured.h"
 
@@ -31,8 +32,7 @@ Image8 checks(int size, int cell) {
 std::vector<AtlasFace> faces_of(const Model& model) { return atlas_faces(model, find_atlases(model).at(0)); }
 
 SeenLoss loss_of(const Model& model, const Image8& image, const std::vector<VertexField>& field = {}) {
-  const Image8* images[] = {&image};
-  return {model, faces_of(model), images, {kColor}, field};
+  return {model, faces_of(model), {mip_map(image, kColor)}, {kColor}, field};
 }
 
 TEST(SeenLoss, IsThatOfShownValues) {
@@ -106,9 +106,9 @@ TEST(SeenLoss, NormalsThatTurnWithTheirFramesAreTheSame) {
     was.pixels[i] = 255, was.pixels[i + 1] = 128, was.pixels[i + 2] = 128;
     turned[0].pixels[i] = 128, turned[0].pixels[i + 1] = 0, turned[0].pixels[i + 2] = 128;
   }
-  const Image8* images[] = {&was};
+  const TexelMeaning normal{TexelMeaning::Kind::normal};
   const std::vector<AtlasFace> faces = faces_of(model);
-  const SeenLoss loss(model, faces, images, {{TexelMeaning::Kind::normal}}, {});
+  const SeenLoss loss(model, faces, {mip_map(was, normal)}, {normal}, {});
   const float quarter = 1.5707964f;
   const std::vector<std::array<float, 3>> turns(faces.size(), {quarter, quarter, quarter});
   EXPECT_LT(loss.of(faces, turns, turned, {}).all[0], 1e-4);

@@ -22,8 +22,9 @@ constexpr int kMapSide = 512, kSteeringSide = 128;
 constexpr int kAttempts = 5;
 /// Of what plain resizing loses: with so little, no other warp is looked for.
 constexpr double kGoodLoss = 0.9;
-/// An image is baked at so many times its new size, at least and at most, and then resized.
-constexpr int kLeastOversampling = 2, kMostOversampling = 8;
+/// An image is baked at so many times its new size, at least and at most, and then resized; to try a warp, at
+/// a part of that.
+constexpr int kLeastOversampling = 2, kMostOversampling = 8, kTrialPart = 2;
 /// And of that size at most, in texels along the longer side, if it is more than the least.
 constexpr int kLongestBaked = 4096;
 /// Mean squared difference below which nothing is lost: that of half a step of a byte.
@@ -92,9 +93,9 @@ ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
   return balanced_importance(maps);
 }
 
-std::vector<const Image8*> pointers(std::span<const WarpedImage> images) {
-  std::vector<const Image8*> result;
-  for (const WarpedImage& image : images) result.push_back(image.image);
+std::vector<MipMap> mip_maps(std::span<const WarpedImage> images) {
+  std::vector<MipMap> result;
+  for (const WarpedImage& image : images) result.push_back(mip_map(*image.image, image.meaning));
   return result;
 }
 
@@ -115,7 +116,10 @@ class Warper {
         context_(context),
         from_(atlas_faces(model, atlas)),
         maps_(texture_importance(model, atlas, field, kMapSide, context)),
-        seen_loss_(model, from_, pointers(images), meanings(images), field) {}
+        seen_loss_(model, from_, mip_maps(images), meanings(images), field) {
+    for (const WarpedImage& image : images)
+      originals_.push_back(image.original != nullptr ? mip_map(*image.original, image.meaning) : MipMap());
+  }
 
   AtlasWarp unmoved() {
     AtlasWarp result;
@@ -140,9 +144,8 @@ class Warper {
   }
   const TextureImportance& maps() const { return maps_; }
 
-  /// After `unmoved`. None if it folds something over; if `measured`, also if pictures of some size lose by
-  /// it.
-  std::optional<AtlasWarp> moved(Warp warp, bool measured) {
+  /// Where a warp takes the triangles; none if it folds something over.
+  std::optional<AtlasWarp> moved(Warp warp) const {
     AtlasWarp result;
     result.is_moved = true;
     result.warp = std::move(warp);
@@ -152,29 +155,38 @@ class Warper {
     for (AtlasFace& face : result.to)
       for (std::size_t k = 0; k < 3; ++k) face.uv[k] = (*at)[face.value[k]];
     result.model = with_moved_coordinates(model_, atlas_, from_, result.to);
-    const auto turns = tangent_turns(model_, from_, result.to);
+    return result;
+  }
+
+  /// After `unmoved`. Bakes the images, at a `part` of the sizes that are best, and sees what is lost. False
+  /// if texels of several triangles would lie on each other, or, if `measured`, pictures of some size lose by
+  /// it.
+  bool bake(AtlasWarp& warp, int part, bool measured) const {
+    const auto turns = tangent_turns(model_, from_, warp.to);
     std::optional<TexelOrigins> origins, originals;
     std::vector<UvSlopes> slopes;
-    for (const WarpedImage& image : images_) {
-      const int factor = oversampling(image);
+    warp.images.clear();
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      const WarpedImage& image = images_[i];
+      const int factor = std::max(oversampling(image) / part, kLeastOversampling);
       const int width = factor * image.width, height = factor * image.height;
       if (!origins || origins->width != width || origins->height != height) {
-        origins = texel_origins(result.to, from_, turns, width, height, context_);
-        slopes = texel_slopes(result.to, from_, width, height);
-        if (conflicts(from_, result.to, *origins) > kMostConflicts) return std::nullopt;
+        origins = texel_origins(warp.to, from_, turns, width, height, context_);
+        slopes = texel_slopes(warp.to, from_, width, height);
+        if (conflicts(from_, warp.to, *origins) > kMostConflicts) return false;
         if (rebake_ != nullptr)
-          originals = rebake_->moved_origins(result.model, result.to, width, height, context_);
+          originals = rebake_->moved_origins(warp.model, warp.to, width, height, context_);
       }
-      const Image8 large = image.original != nullptr
-                               ? baked(*image.original, image.meaning, *originals, slopes, context_)
-                               : baked(*image.image, image.meaning, *origins, slopes, context_);
-      result.images.push_back(
+      const Image8 large =
+          image.original != nullptr
+              ? baked(*image.original, originals_[i], image.meaning, *originals, slopes, context_)
+              : baked(*image.image, seen_loss_.image(i), image.meaning, *origins, slopes, context_);
+      warp.images.push_back(
           resized(large, image.width, image.height, image.meaning, image.wrap_u, image.wrap_v, context_));
     }
-    const PictureLosses loss = seen_loss_.of(result.to, turns, result.images, context_);
-    if (measured && loss.is_worse_somewhere(plain_loss_)) return std::nullopt;
-    result.loss = loss.mean();
-    return result;
+    const PictureLosses loss = seen_loss_.of(warp.to, turns, warp.images, context_);
+    warp.loss = loss.mean();
+    return !measured || !loss.is_worse_somewhere(plain_loss_);
   }
 
  private:
@@ -186,6 +198,7 @@ class Warper {
   std::vector<AtlasFace> from_;
   TextureImportance maps_;
   SeenLoss seen_loss_;
+  std::vector<MipMap> originals_;  // [#images], empty without an original
   PictureLosses plain_loss_{};
   TexelOrigins places_;
 };
@@ -207,13 +220,16 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
     asked.joined_u = asked.joined_u || image.wrap_u == Wrap::repeat;
     asked.joined_v = asked.joined_v || image.wrap_v == Wrap::repeat;
   }
+  std::optional<AtlasWarp> found;
   for (int attempt = 0; attempt < kAttempts && asked.floor <= 1; ++attempt, asked.floor *= 2) {
-    std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context), measured);
-    if (!next || (measured && next->loss >= best.loss)) continue;
-    best = std::move(*next);
-    best.floor = asked.floor;
-    if (!measured || best.loss < kGoodLoss * plain_loss) break;
+    std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
+    if (!next || !warper.bake(*next, kTrialPart, measured)) continue;
+    if (measured && next->loss >= (found ? found->loss : plain_loss)) continue;
+    found = std::move(next);
+    found->floor = asked.floor;
+    if (!measured || found->loss < kGoodLoss * plain_loss) break;
   }
+  if (found && warper.bake(*found, 1, measured)) best = std::move(*found);
   best.plain_loss = plain_loss;
   best.maps = warper.maps();
   best.importance = std::move(importance);

@@ -37,11 +37,14 @@ std::vector<UvSlopes> texel_slopes(std::span<const AtlasFace> to, std::span<cons
   return slopes;
 }
 
-Image8 baked(const Image8& image, const TexelMeaning& meaning, const TexelOrigins& origins,
+MipMap mip_map(const Image8& image, const TexelMeaning& meaning) {
+  return {image, meaning.kind == TexelMeaning::Kind::color ? ColorEncoding::srgb : ColorEncoding::linear};
+}
+
+Image8 baked(const Image8& image, const MipMap& map, const TexelMeaning& meaning, const TexelOrigins& origins,
              std::span<const UvSlopes> slopes, const Context& context) {
   const bool is_color = meaning.kind == TexelMeaning::Kind::color,
              is_normal = meaning.kind == TexelMeaning::Kind::normal && image.channels >= 3;
-  const MipMap map(image, is_color ? ColorEncoding::srgb : ColorEncoding::linear);
   const Sampler sampler{
       .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
   Image8 result(origins.width, origins.height, image.channels, image.encoding);
@@ -89,7 +92,7 @@ std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int w
 
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
   std::vector<std::uint8_t> known = covered_texels(faces, image.width, image.height, context);
-  grow_drawn(known, image.width, image.height);
+  grow_drawn(known, image.width, image.height, context);
   fill_undrawn(image, known, context);
 }
 

@@ -26,6 +26,8 @@ struct Level {
 };
 
 constexpr int kMostChannels = 4;
+/// Of texels that have a value, and of those that get one next.
+constexpr std::uint8_t kKnown = 1, kMarked = 2;
 
 template <class Row>
 void over_rows(int height, const Context& context, const Row& row) {
@@ -101,65 +103,78 @@ void for_around(const Image8& image, std::size_t texel, F&& f) {
 }
 
 /// The texels beside those that are known.
-std::vector<std::size_t> border(const Image8& image, std::span<const std::uint8_t> known) {
+std::vector<std::size_t> border(const Image8& image, std::span<const std::uint8_t> known,
+                                const Context& context) {
+  const auto width = static_cast<std::size_t>(image.width);
+  std::vector<std::vector<std::size_t>> rows(static_cast<std::size_t>(image.height));
+  over_rows(image.height, context, [&](int y) {
+    const auto row = static_cast<std::size_t>(y);
+    for (std::size_t t = row * width; t < (row + 1) * width; ++t) {
+      if (known[t] != 0) continue;
+      bool is_beside = false;
+      for_around(image, t, [&](std::size_t n) { is_beside = is_beside || known[n] != 0; });
+      if (is_beside) rows[row].push_back(t);
+    }
+  });
   std::vector<std::size_t> found;
-  for (std::size_t t = 0; t < known.size(); ++t) {
-    if (known[t] != 0) continue;
-    bool is_beside = false;
-    for_around(image, t, [&](std::size_t n) { is_beside = is_beside || known[n] != 0; });
-    if (is_beside) found.push_back(t);
-  }
+  for (const std::vector<std::size_t>& row : rows) found.insert(found.end(), row.begin(), row.end());
   return found;
 }
 
 /// Gives each of `texels` the mean of the known ones around it, nearer ones twice; then they are known.
-void give_means(Image8& image, std::span<const std::size_t> texels, std::vector<std::uint8_t>& known) {
+void give_means(Image8& image, std::span<const std::size_t> texels, std::vector<std::uint8_t>& known,
+                const Context& context) {
+  constexpr std::size_t kGrain = 4096;
   const auto channels = static_cast<std::size_t>(image.channels),
              width = static_cast<std::size_t>(image.width);
-  for (const std::size_t t : texels) {
+  const auto give = [&](std::size_t t) {
     std::array<int, kMostChannels> sum{};
     int count = 0;
     for_around(image, t, [&](std::size_t n) {
-      if (known[n] == 0) return;
+      if (known[n] != kKnown) return;
       const int weight = n % width == t % width || n / width == t / width ? 2 : 1;
       count += weight;
       for (std::size_t k = 0; k < channels; ++k) sum[k] += weight * image.pixels[n * channels + k];
     });
     for (std::size_t k = 0; k < channels; ++k)
       image.pixels[t * channels + k] = static_cast<std::uint8_t>((sum[k] + count / 2) / count);
-  }
-  for (const std::size_t t : texels) known[t] = 1;
+  };
+  parallel_for_or_throw(context, texels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) give(texels[i]);
+  });
+  for (const std::size_t t : texels) known[t] = kKnown;
 }
 
-/// The texels beside `ring` that are not known, rising.
+/// The texels beside `ring` that are not known, each once; they are marked.
 std::vector<std::size_t> next_ring(const Image8& image, std::span<const std::size_t> ring,
-                                   std::span<const std::uint8_t> known) {
+                                   std::vector<std::uint8_t>& known) {
   std::vector<std::size_t> next;
   for (const std::size_t t : ring) {
     for_around(image, t, [&](std::size_t n) {
-      if (known[n] == 0) next.push_back(n);
+      if (known[n] != 0) return;
+      known[n] = kMarked;
+      next.push_back(n);
     });
   }
-  std::ranges::sort(next);
-  next.erase(std::unique(next.begin(), next.end()), next.end());
   return next;
 }
 
 }  // namespace
 
-void grow_drawn(std::span<std::uint8_t> drawn, int width, int height) {
+void grow_drawn(std::span<std::uint8_t> drawn, int width, int height, const Context& context) {
   const Image8 shape(width, height, 1, ColorEncoding::linear);
-  for (const std::size_t t : border(shape, drawn)) drawn[t] = 1;
+  for (const std::size_t t : border(shape, drawn, context)) drawn[t] = 1;
 }
 
 void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn, const Context& context) {
   assert(image.channels <= kMostChannels);
-  std::vector<std::uint8_t> known(drawn.begin(), drawn.end());
-  std::vector<std::size_t> ring = border(image, known);
+  std::vector<std::uint8_t> known(drawn.size());
+  for (std::size_t t = 0; t < drawn.size(); ++t) known[t] = drawn[t] != 0 ? kKnown : 0;
+  std::vector<std::size_t> ring = border(image, known, context);
   if (ring.empty()) return;
   for (int i = 0; i < kRings && !ring.empty(); ++i) {
-    give_means(image, ring, known);
-    ring = next_ring(image, ring, known);
+    give_means(image, ring, known, context);
+    if (i + 1 < kRings) ring = next_ring(image, ring, known);
   }
   fill(image, known, context);
 }

@@ -18,7 +18,7 @@ namespace fovea {
 /// happens if all are. O(#texels), parallel.
 void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn, const Context& context);
 
-/// The eight around each drawn texel count as drawn, too. O(#texels).
-void grow_drawn(std::span<std::uint8_t> drawn, int width, int height);
+/// The eight around each drawn texel count as drawn, too. O(#texels), parallel.
+void grow_drawn(std::span<std::uint8_t> drawn, int width, int height, const Context& context);
 
 }  // namespace fovea

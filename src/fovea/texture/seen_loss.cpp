@@ -8,6 +8,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
+#include "fovea/texture/bake.h"
 #include "fovea/texture/tangent_frame.h"
 #include "fovea/texture/texel_loss.h"
 
@@ -27,10 +28,6 @@ constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
 constexpr double kLeastDistance = 0.5 / 255, kLeastLoss = kLeastDistance * kLeastDistance;
 constexpr Sampler kSampler{
     .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
-
-ColorEncoding encoding_of(const TexelMeaning& meaning) {
-  return meaning.kind == TexelMeaning::Kind::color ? ColorEncoding::srgb : ColorEncoding::linear;
-}
 
 UvSlopes scaled(const UvSlopes& slopes, double factor) {
   const auto f = static_cast<float>(factor);
@@ -96,16 +93,14 @@ bool PictureLosses::is_worse_somewhere(const PictureLosses& than) const {
   return false;
 }
 
-SeenLoss::SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::span<const Image8* const> images,
+SeenLoss::SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::vector<MipMap> images,
                    std::vector<TexelMeaning> meanings, std::span<const VertexField> field)
     : model_(model),
       faces_(std::move(faces)),
       meanings_(std::move(meanings)),
-      before_{surface_slopes(model, faces_), {}} {
+      before_{surface_slopes(model, faces_), std::move(images)} {
   const Box box = bounds(model);
   diagonal_ = length(Vec3d(box.high) - Vec3d(box.low));
-  for (std::size_t i = 0; i < images.size(); ++i)
-    before_.images.emplace_back(*images[i], encoding_of(meanings_[i]));
   spread_points(field);
 }
 
@@ -193,8 +188,7 @@ ImageF SeenLoss::map(const TexelOrigins& places, std::span<const Image8> images,
 
 SeenLoss::View SeenLoss::view(std::span<const AtlasFace> faces, std::span<const Image8> images) const {
   View view{surface_slopes(model_, faces), {}};
-  for (std::size_t i = 0; i < images.size(); ++i)
-    view.images.emplace_back(images[i], encoding_of(meanings_[i]));
+  for (std::size_t i = 0; i < images.size(); ++i) view.images.push_back(mip_map(images[i], meanings_[i]));
   return view;
 }
 

@@ -42,9 +42,11 @@ struct PictureLosses {
 class SeenLoss {
  public:
   /// `faces` are where they are in `images`, the field as for `texture_importance`. Keeps a reference to the
-  /// model. O(#F + #texels).
-  SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::span<const Image8* const> images,
+  /// model. O(#F).
+  SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::vector<MipMap> images,
            std::vector<TexelMeaning> meanings, std::span<const VertexField> field);
+
+  const MipMap& image(std::size_t i) const { return before_.images[i]; }
 
   /// The mean over the surface with triangles and images like these, normal maps among them that turn at
   /// corners by `turns` (`tangent_turns`; or none at all). Parallel.
