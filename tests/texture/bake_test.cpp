@@ -33,9 +33,10 @@ Image8 bake(const Image8& image, Kind kind, const Model& model, const std::vecto
             const std::vector<AtlasFace>& to, int width, int height, int threads = 1) {
   Context context;
   context.threads = threads;
-  return baked(image, mip_map(image, {kind}), {kind},
-               texel_origins(to, from, tangent_turns(model, from, to), width, height, context),
-               texel_slopes(to, from, width, height), context);
+  const MipMap map = mip_map(image, {kind});
+  const BakeSource source{&image, &map, {kind}};
+  return baked({&source, 1}, texel_origins(to, from, tangent_turns(model, from, to), width, height, context),
+               texel_slopes(to, from, width, height), context)[0];
 }
 
 TEST(Baked, WithoutMovesTheImageIsWhatItWas) {

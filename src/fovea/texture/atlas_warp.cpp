@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
+#include "fovea/base/parallel.h"
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
 #include "fovea/texture/moved_values.h"
@@ -93,9 +95,14 @@ ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
   return balanced_importance(maps);
 }
 
-std::vector<MipMap> mip_maps(std::span<const WarpedImage> images) {
-  std::vector<MipMap> result;
-  for (const WarpedImage& image : images) result.push_back(mip_map(*image.image, image.meaning));
+/// Of the images, or of those that they were baked from, empty where there is none.
+std::vector<MipMap> mip_maps(std::span<const WarpedImage> images, const Image8* WarpedImage::*which,
+                             const Context& context) {
+  std::vector<MipMap> result(images.size());
+  parallel_for_or_throw(context, images.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (images[i].*which != nullptr) result[i] = mip_map(*(images[i].*which), images[i].meaning);
+  });
   return result;
 }
 
@@ -116,10 +123,8 @@ class Warper {
         context_(context),
         from_(atlas_faces(model, atlas)),
         maps_(texture_importance(model, atlas, field, kMapSide, context)),
-        seen_loss_(model, from_, mip_maps(images), meanings(images), field) {
-    for (const WarpedImage& image : images)
-      originals_.push_back(image.original != nullptr ? mip_map(*image.original, image.meaning) : MipMap());
-  }
+        seen_loss_(model, from_, mip_maps(images, &WarpedImage::image, context), meanings(images), field),
+        originals_(mip_maps(images, &WarpedImage::original, context)) {}
 
   AtlasWarp unmoved() {
     AtlasWarp result;
@@ -163,26 +168,27 @@ class Warper {
   /// it.
   bool bake(AtlasWarp& warp, int part, bool measured) const {
     const auto turns = tangent_turns(model_, from_, warp.to);
+    warp.images.assign(images_.size(), {});
     std::optional<TexelOrigins> origins, originals;
-    std::vector<UvSlopes> slopes;
-    warp.images.clear();
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      const WarpedImage& image = images_[i];
+    for (std::size_t first = 0; first < images_.size(); ++first) {
+      if (warp.images[first].width > 0) continue;
+      const WarpedImage& image = images_[first];
       const int factor = std::max(oversampling(image) / part, kLeastOversampling);
       const int width = factor * image.width, height = factor * image.height;
       if (!origins || origins->width != width || origins->height != height) {
         origins = texel_origins(warp.to, from_, turns, width, height, context_);
-        slopes = texel_slopes(warp.to, from_, width, height);
         if (conflicts(from_, warp.to, *origins) > kMostConflicts) return false;
         if (rebake_ != nullptr)
           originals = rebake_->moved_origins(warp.model, warp.to, width, height, context_);
       }
-      const Image8 large =
-          image.original != nullptr
-              ? baked(*image.original, originals_[i], image.meaning, *originals, slopes, context_)
-              : baked(*image.image, seen_loss_.image(i), image.meaning, *origins, slopes, context_);
-      warp.images.push_back(
-          resized(large, image.width, image.height, image.meaning, image.wrap_u, image.wrap_v, context_));
+      const std::vector<std::size_t> alike = images_like(first);
+      std::vector<BakeSource> sources;
+      for (const std::size_t i : alike) sources.push_back(source(i));
+      const std::vector<Image8> large = baked(sources, image.original != nullptr ? *originals : *origins,
+                                              texel_slopes(warp.to, from_, width, height), context_);
+      for (std::size_t k = 0; k < alike.size(); ++k)
+        warp.images[alike[k]] = resized(large[k], image.width, image.height, sources[k].meaning, image.wrap_u,
+                                        image.wrap_v, context_);
     }
     const PictureLosses loss = seen_loss_.of(warp.to, turns, warp.images, context_);
     warp.loss = loss.mean();
@@ -190,6 +196,27 @@ class Warper {
   }
 
  private:
+  /// What an image is baked from.
+  BakeSource source(std::size_t i) const {
+    const WarpedImage& image = images_[i];
+    return image.original != nullptr ? BakeSource{image.original, &originals_[i], image.meaning}
+                                     : BakeSource{image.image, &seen_loss_.image(i), image.meaning};
+  }
+  /// Those from it on that can be baked together with an image.
+  std::vector<std::size_t> images_like(std::size_t first) const {
+    const auto shape = [&](std::size_t i) {
+      const WarpedImage& image = images_[i];
+      const Image8& from = *source(i).image;
+      return std::tuple(image.original != nullptr, from.width, from.height, image.width, image.height,
+                        image.wrap_u, image.wrap_v);
+    };
+    std::vector<std::size_t> alike;
+    for (std::size_t i = first; i < images_.size(); ++i) {
+      if (shape(i) == shape(first)) alike.push_back(i);
+    }
+    return alike;
+  }
+
   const Model& model_;
   const Atlas& atlas_;
   std::span<const WarpedImage> images_;

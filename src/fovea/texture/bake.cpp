@@ -1,6 +1,7 @@
 #include "fovea/texture/bake.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "fovea/base/parallel.h"
@@ -41,33 +42,42 @@ MipMap mip_map(const Image8& image, const TexelMeaning& meaning) {
   return {image, meaning.kind == TexelMeaning::Kind::color ? ColorEncoding::srgb : ColorEncoding::linear};
 }
 
-Image8 baked(const Image8& image, const MipMap& map, const TexelMeaning& meaning, const TexelOrigins& origins,
-             std::span<const UvSlopes> slopes, const Context& context) {
-  const bool is_color = meaning.kind == TexelMeaning::Kind::color,
-             is_normal = meaning.kind == TexelMeaning::Kind::normal && image.channels >= 3;
+std::vector<Image8> baked(std::span<const BakeSource> sources, const TexelOrigins& origins,
+                          std::span<const UvSlopes> slopes, const Context& context) {
   const Sampler sampler{
       .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
-  Image8 result(origins.width, origins.height, image.channels, image.encoding);
+  std::vector<Image8> results;
+  for (const BakeSource& source : sources) {
+    assert(source.image->width == sources[0].image->width &&
+           source.image->height == sources[0].image->height);
+    results.emplace_back(origins.width, origins.height, source.image->channels, source.image->encoding);
+  }
+  const auto bake_texel = [&](int x, int y) {
+    const TexelOrigin& origin = origins.texels[origins.index(x, y)];
+    const Footprint footprint =
+        sources[0].map->footprint(origin.uv, slopes[origin.face], sampler, kAnisotropy);
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      Rgba value = sources[s].map->sample(footprint);
+      const bool is_color = sources[s].meaning.kind == TexelMeaning::Kind::color;
+      const int alpha = results[s].color_channels();
+      if (sources[s].meaning.kind == TexelMeaning::Kind::normal && alpha == 3)
+        value = turned(value, origin.turn, origin.is_mirrored);
+      std::uint8_t* out = results[s].at(x, y);
+      const float colors[] = {value.r, value.g, value.b};
+      for (int k = 0; k < alpha; ++k) out[k] = is_color ? to_display(colors[k]) : byte(colors[k]);
+      if (results[s].has_alpha()) out[alpha] = byte(value.a);
+    }
+  };
   parallel_for_or_throw(context, static_cast<std::size_t>(origins.height), kGrain,
                         [&](std::size_t begin, std::size_t end) {
-                          for (std::size_t y = begin; y < end; ++y) {
+                          for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
                             for (int x = 0; x < origins.width; ++x) {
-                              const std::size_t i = origins.index(x, static_cast<int>(y));
-                              if (origins.drawn[i] == 0) continue;
-                              const TexelOrigin& origin = origins.texels[i];
-                              Rgba value = map.sample(origin.uv, slopes[origin.face], sampler, kAnisotropy);
-                              if (is_normal) value = turned(value, origin.turn, origin.is_mirrored);
-                              std::uint8_t* out = result.at(x, static_cast<int>(y));
-                              const float colors[] = {value.r, value.g, value.b};
-                              const int alpha = image.color_channels();
-                              for (int k = 0; k < alpha; ++k)
-                                out[k] = is_color ? to_display(colors[k]) : byte(colors[k]);
-                              if (alpha < image.channels) out[alpha] = byte(value.a);
+                              if (origins.drawn[origins.index(x, y)] != 0) bake_texel(x, y);
                             }
                           }
                         });
-  fill_undrawn(result, origins.drawn, context);
-  return result;
+  fill_undrawn(results, origins.drawn, context);
+  return results;
 }
 
 std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int width, int height,

@@ -21,14 +21,22 @@ std::vector<UvSlopes> texel_slopes(std::span<const AtlasFace> to, std::span<cons
 /// The copies of an image that `baked` looks at.
 MipMap mip_map(const Image8& image, const TexelMeaning& meaning);
 
-/// The image as it looks through triangles that have moved: each texel of the new image is looked up where
-/// it comes from, as GPUs filter (`MipMap`, up to four looks along the longer side of what it covers). Normal
-/// maps turn with their tangents. What no triangle covers goes on from what is around (`fill_undrawn`).
+/// An image that is baked, and its `mip_map`.
+struct BakeSource {
+  const Image8* image = nullptr;
+  const MipMap* map = nullptr;
+  TexelMeaning meaning;
+};
+
+/// Images of one size as they look through triangles that have moved: each texel of the new ones is looked up
+/// where it comes from, as GPUs filter (`MipMap`, up to four looks along the longer side of what it covers).
+/// Normal maps turn with their tangents. What no triangle covers goes on from what is around
+/// (`fill_undrawn`).
 ///
-/// `map` is the image's own; `slopes` [#faces of `origins`]. The result has the size of `origins`. O(#texels
-/// of both), parallel. Throws Error(cancelled).
-Image8 baked(const Image8& image, const MipMap& map, const TexelMeaning& meaning, const TexelOrigins& origins,
-             std::span<const UvSlopes> slopes, const Context& context);
+/// `slopes` [#faces of `origins`]. The results have the size of `origins`. O(#texels of all), parallel.
+/// Throws Error(cancelled).
+std::vector<Image8> baked(std::span<const BakeSource> sources, const TexelOrigins& origins,
+                          std::span<const UvSlopes> slopes, const Context& context);
 
 /// 1 for texels that triangles show: those whose centre lies in one, and those along triangles that are less
 /// than a texel high. [height × width]. O(#F + #texels), parallel.

@@ -121,9 +121,10 @@ std::vector<std::size_t> border(const Image8& image, std::span<const std::uint8_
   return found;
 }
 
-/// Gives each of `texels` the mean of the known ones around it, nearer ones twice; then they are known.
-void give_means(Image8& image, std::span<const std::size_t> texels, std::vector<std::uint8_t>& known,
+/// Gives each of `texels` the mean of the known ones around it, nearer ones twice.
+void give_means(Image8& image, std::span<const std::size_t> texels, std::span<const std::uint8_t> known,
                 const Context& context) {
+  assert(image.channels <= kMostChannels);
   constexpr std::size_t kGrain = 4096;
   const auto channels = static_cast<std::size_t>(image.channels),
              width = static_cast<std::size_t>(image.width);
@@ -142,7 +143,6 @@ void give_means(Image8& image, std::span<const std::size_t> texels, std::vector<
   parallel_for_or_throw(context, texels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) give(texels[i]);
   });
-  for (const std::size_t t : texels) known[t] = kKnown;
 }
 
 /// The texels beside `ring` that are not known, each once; they are marked.
@@ -166,17 +166,17 @@ void grow_drawn(std::span<std::uint8_t> drawn, int width, int height, const Cont
   for (const std::size_t t : border(shape, drawn, context)) drawn[t] = 1;
 }
 
-void fill_undrawn(Image8& image, std::span<const std::uint8_t> drawn, const Context& context) {
-  assert(image.channels <= kMostChannels);
+void fill_undrawn(std::span<Image8> images, std::span<const std::uint8_t> drawn, const Context& context) {
   std::vector<std::uint8_t> known(drawn.size());
   for (std::size_t t = 0; t < drawn.size(); ++t) known[t] = drawn[t] != 0 ? kKnown : 0;
-  std::vector<std::size_t> ring = border(image, known, context);
+  std::vector<std::size_t> ring = border(images[0], known, context);
   if (ring.empty()) return;
   for (int i = 0; i < kRings && !ring.empty(); ++i) {
-    give_means(image, ring, known, context);
-    if (i + 1 < kRings) ring = next_ring(image, ring, known);
+    for (Image8& image : images) give_means(image, ring, known, context);
+    for (const std::size_t t : ring) known[t] = kKnown;
+    if (i + 1 < kRings) ring = next_ring(images[0], ring, known);
   }
-  fill(image, known, context);
+  for (Image8& image : images) fill(image, known, context);
 }
 
 }  // namespace fovea

@@ -125,7 +125,9 @@ Image8 AtlasRebake::baked(const Image8& image, const TexelMeaning& meaning, cons
   const std::vector<UvSlopes> slopes =
       texel_slopes(origin_.faces(), origin_.faces(), image.width, image.height);
   const TexelOrigins& from = origins(image.width, image.height, context);
-  Image8 result = fovea::baked(filled, mip_map(filled, meaning), meaning, from, slopes, context);
+  const MipMap map = mip_map(filled, meaning);
+  const BakeSource source{&filled, &map, meaning};
+  Image8 result = std::move(fovea::baked({&source, 1}, from, slopes, context)[0]);
   const auto width = static_cast<std::size_t>(image.channels);
   for (std::size_t i = 0; i < from.drawn.size(); ++i) {
     if (from.drawn[i] == kBeyond) std::copy_n(&image.pixels[i * width], width, &result.pixels[i * width]);
