@@ -33,6 +33,7 @@
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/salient.h"
 #include "fovea/simplify/simplify.h"
+#include "fovea/texture/bake.h"
 #include "fovea/texture/image_use.h"
 #include "fovea/texture/seam_jump.h"
 #include "fovea/texture/shrink.h"
@@ -293,10 +294,22 @@ struct Fit {
   std::uint64_t bytes = 0;
 };
 
+/// Triangles that show each image of a model; none where they are not all known.
+std::vector<std::vector<AtlasFace>> faces_of_images(const Model& model) {
+  std::vector<std::vector<AtlasFace>> result(model.images.size());
+  for (const Atlas& atlas : find_atlases(model)) {
+    if (!atlas.fixed_because.empty()) continue;
+    for (const int image : atlas.images) result[static_cast<std::size_t>(image)] = atlas_faces(model, atlas);
+  }
+  return result;
+}
+
 /// `small` with files as near as no more than `most` bytes allow. No file is larger than that of `original`.
 Fit fitted(const Model& original, const Model& small, std::uint64_t most, const Request& request) {
   constexpr int kTries = 7;
   const std::vector<ImageUse> uses = image_uses(original);
+  const std::vector<std::vector<AtlasFace>> faces = faces_of_images(small);
+  const Context context;
   Fit best;
   double low = 20, high = 60;
   for (int i = 0; i < kTries; ++i) {
@@ -307,9 +320,11 @@ Fit fitted(const Model& original, const Model& small, std::uint64_t most, const 
       const EncodedImage& before = original.images[n];
       EncodedImage& file = next.model.images[n];
       std::optional<ImageOutput> found;
-      if (uses[n].is_used && !uses[n].is_ambiguous && state_of(before).width > 0)
-        found = encode_output(without_idle_alpha(decode_image(file.bytes), uses[n]), uses[n],
-                              before.mime_type, before.bytes.size(), output);
+      if (uses[n].is_used && !uses[n].is_ambiguous && state_of(before).width > 0) {
+        const Image8 image = without_idle_alpha(decode_image(file.bytes), uses[n]);
+        found = encode_output(image, uses[n], before.mime_type, before.bytes.size(), output,
+                              read_texels(faces[n], image.width, image.height, context));
+      }
       file.mime_type = found ? mime_type(found->format) : before.mime_type;
       file.bytes = found ? std::move(found->texture.bytes) : before.bytes;
     }

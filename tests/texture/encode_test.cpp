@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fovea/base/random.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/model/image_error.h"
 #include "support/pictures.h"
@@ -132,6 +133,32 @@ TEST(EncodeToPsnr, LargeImagesWithLittleInThemAreFoundToBeNearEnough) {
 TEST(EncodeToPsnr, OneTexel) {
   for (const TextureFormat format : {TextureFormat::png, TextureFormat::jpeg, TextureFormat::webp})
     EXPECT_FALSE(encode_to_psnr(even(1, 1), format, 40, Content::data).bytes.empty());
+}
+
+TEST(EncodingPsnr, LooksAtWhatCounts) {
+  // Noise nobody sees on the left does not ask for quality on the right.
+  Random random(3);
+  Image8 image(512, 256, 3, ColorEncoding::srgb);
+  std::vector<std::uint8_t> right(std::size_t{512} * 256, 0);
+  for (int y = 0; y < 256; ++y) {
+    for (int x = 0; x < 512; ++x) {
+      right[static_cast<std::size_t>(512 * y + x)] = x >= 256 ? 1 : 0;
+      for (int k = 0; k < 3; ++k)
+        image.at(x, y)[k] =
+            static_cast<std::uint8_t>(x < 256 ? 255 * random.uniform() : 100 + 50 * std::sin(0.05 * (x + y)));
+    }
+  }
+  const EncodedTexture all = encode_to_psnr(image, TextureFormat::jpeg, 40, Content::colors),
+                       some = encode_to_psnr(image, TextureFormat::jpeg, 40, Content::colors, right);
+  EXPECT_GE(some.psnr_db, 40);
+  EXPECT_LT(some.bytes.size(), all.bytes.size() / 2);
+  const Image8 decoded = decode_image(some.bytes);
+  EXPECT_GE(encoding_psnr(image, decoded, Content::colors, right), 40);
+  EXPECT_LT(encoding_psnr(image, decoded, Content::colors), 35);
+  // Nothing that counts is no reason to be bad.
+  const std::vector<std::uint8_t> none(right.size(), 0);
+  EXPECT_EQ(encoding_psnr(image, decoded, Content::colors, none),
+            encoding_psnr(image, decoded, Content::colors));
 }
 
 }  // namespace

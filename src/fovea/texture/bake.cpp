@@ -100,10 +100,17 @@ std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int w
   return covered;
 }
 
+std::vector<std::uint8_t> read_texels(std::span<const AtlasFace> faces, int width, int height,
+                                      const Context& context) {
+  if (faces.empty()) return {};
+  std::vector<std::uint8_t> texels = covered_texels(faces, width, height, context);
+  grow_drawn(texels, width, height, context);
+  return texels;
+}
+
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
-  std::vector<std::uint8_t> known = covered_texels(faces, image.width, image.height, context);
-  grow_drawn(known, image.width, image.height, context);
-  fill_undrawn(image, known, context);
+  if (faces.empty()) return;
+  fill_undrawn(image, read_texels(faces, image.width, image.height, context), context);
 }
 
 }  // namespace fovea

@@ -43,6 +43,11 @@ std::vector<Image8> baked(std::span<const BakeSource> sources, const TexelOrigin
 std::vector<std::uint8_t> covered_texels(std::span<const AtlasFace> faces, int width, int height,
                                          const Context& context);
 
+/// 1 for texels that pictures read: those that are covered and the eight around each. [height × width];
+/// empty, for all, without triangles. O(#F + #texels), parallel.
+std::vector<std::uint8_t> read_texels(std::span<const AtlasFace> faces, int width, int height,
+                                      const Context& context);
+
 /// The image with all that no triangle covers (`covered_texels`) filled from what is around, its colours
 /// beyond the triangles' borders among them; but for the texels beside those that are covered, which are
 /// mixed into what shows. In place. O(#F + #texels), parallel.

@@ -91,9 +91,13 @@ ByteBudget::ByteBudget(const Model& model, std::span<const Atlas> atlases,
 Image8 ByteBudget::whole(const Candidate& candidate) const {
   Image8 image =
       without_idle_alpha(decode_image(model_.images[candidate.image].bytes), uses_[candidate.image]);
-  if (candidate.atlas->fixed_because.empty())
-    fill_between(image, atlas_faces(model_, *candidate.atlas), context_);
+  fill_between(image, known_faces(candidate), context_);
   return image;
+}
+
+std::vector<AtlasFace> ByteBudget::known_faces(const Candidate& candidate) const {
+  return candidate.atlas->fixed_because.empty() ? atlas_faces(model_, *candidate.atlas)
+                                                : std::vector<AtlasFace>{};
 }
 
 Image8 ByteBudget::picture(const Candidate& candidate, int width, int height) const {
@@ -136,9 +140,9 @@ double ByteBudget::encoded_bytes(const Candidate& candidate, const LadderStep& s
   if (step.is_file) return static_cast<double>(file.bytes.size());
   ImageOutputOptions options = options_;
   options.psnr_db = step.psnr_db;
-  const std::optional<ImageOutput> output =
-      encode_output(picture(candidate, step.width, step.height), uses_[candidate.image],
-                    state_of(file).mime_type, file.bytes.size(), options);
+  const std::optional<ImageOutput> output = encode_output(
+      picture(candidate, step.width, step.height), uses_[candidate.image], state_of(file).mime_type,
+      file.bytes.size(), options, read_texels(known_faces(candidate), step.width, step.height, context_));
   return static_cast<double>(output ? output->texture.bytes.size() : file.bytes.size());
 }
 

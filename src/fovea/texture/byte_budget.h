@@ -46,6 +46,8 @@ class ByteBudget {
   using Numbers = std::vector<std::size_t>;  // [#candidates] of steps
 
   Image8 whole(const Candidate& candidate) const;
+  /// All triangles that show it; none if they are not known.
+  std::vector<AtlasFace> known_faces(const Candidate& candidate) const;
   Image8 picture(const Candidate& candidate, int width, int height) const;
   void measure(Candidate& candidate, const ImageF& weights, double area) const;
   double encoded_bytes(const Candidate& candidate, const LadderStep& step) const;

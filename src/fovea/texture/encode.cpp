@@ -30,6 +30,17 @@ std::vector<std::uint8_t> encoded(const Image8& image, TextureFormat format, int
   throw Error(ErrorKind::internal, "an unknown format of textures");
 }
 
+/// An image and which of its texels count: none are named if all do.
+struct Counted {
+  const Image8& image;
+  std::span<const std::uint8_t> texels;
+
+  bool counts(int x, int y) const {
+    return texels.empty() || texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                    static_cast<std::size_t>(x)] != 0;
+  }
+};
+
 /// A part of an image: columns [x0, x1), rows [y0, y1).
 struct Square {
   int x0, y0, x1, y1;
@@ -47,31 +58,35 @@ struct SquaredError {
   }
 };
 
-/// `error` of two texels, summed over a part of two images.
+/// `error` of two texels, summed over what counts of a part of two images.
 template <class F>
-SquaredError summed(const Image8& a, const Image8& b, const Square& square, const F& error) {
+SquaredError summed(const Counted& a, const Image8& b, const Square& square, const F& error) {
   SquaredError result;
-  for (int y = square.y0; y < square.y1; ++y)
-    for (int x = square.x0; x < square.x1; ++x) result.sum += error(a.at(x, y), b.at(x, y));
-  result.texels = std::int64_t{square.x1 - square.x0} * (square.y1 - square.y0);
+  for (int y = square.y0; y < square.y1; ++y) {
+    for (int x = square.x0; x < square.x1; ++x) {
+      if (!a.counts(x, y)) continue;
+      result.sum += error(a.image.at(x, y), b.at(x, y));
+      ++result.texels;
+    }
+  }
   return result;
 }
 
-SquaredError color_error(const Image8& a, const Image8& b, const Square& square) {
+SquaredError color_error(const Counted& a, const Image8& b, const Square& square) {
   return summed(a, b, square, [&](const std::uint8_t* p, const std::uint8_t* q) {
     const auto off = [&](std::size_t k) { return static_cast<double>(p[k]) - q[k]; };
     const double y = 0.299 * off(0) + 0.587 * off(1) + 0.114 * off(2);
     const double cb = 0.564 * (off(2) - y), cr = 0.713 * (off(0) - y);
     const double colors = (6 * y * y + cb * cb + cr * cr) / 8;
-    return a.channels == 4 ? (3 * colors + off(3) * off(3)) / 4 : colors;
+    return b.channels == 4 ? (3 * colors + off(3) * off(3)) / 4 : colors;
   });
 }
 
-SquaredError data_error(const Image8& a, const Image8& b, const Square& square) {
+SquaredError data_error(const Counted& a, const Image8& b, const Square& square) {
   return summed(a, b, square, [&](const std::uint8_t* p, const std::uint8_t* q) {
     double sum = 0;
-    for (int k = 0; k < a.channels; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]);
-    return sum / a.channels;
+    for (int k = 0; k < b.channels; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]);
+    return sum / b.channels;
   });
 }
 
@@ -93,6 +108,15 @@ bool is_even(const Image8& image, const Square& square) {
   return true;
 }
 
+bool counts(const Counted& of, const Square& square) {
+  for (int y = square.y0; y < square.y1; ++y) {
+    for (int x = square.x0; x < square.x1; ++x) {
+      if (of.counts(x, y)) return true;
+    }
+  }
+  return false;
+}
+
 /// Decoders may turn grey into colours, or leave out alpha that is opaque.
 Image8 with_channels(const Image8& image, int channels) {
   if (image.channels == channels) return image;
@@ -110,47 +134,63 @@ Image8 with_channels(const Image8& image, int channels) {
   return result;
 }
 
-EncodedTexture measured(const Image8& image, TextureFormat format, int quality, Content content) {
-  EncodedTexture result{encoded(image, format, quality), quality, 0};
-  const Image8 decoded = with_channels(decode_image(result.bytes), image.channels);
-  result.psnr_db = encoding_psnr(image, decoded, content);
+EncodedTexture measured(const Counted& of, TextureFormat format, int quality, Content content) {
+  EncodedTexture result{encoded(of.image, format, quality), quality, 0};
+  const Image8 decoded = with_channels(decode_image(result.bytes), of.image.channels);
+  result.psnr_db = encoding_psnr(of.image, decoded, content, of.texels);
   return result;
 }
 
-/// Squares of kTile² from all over the image, in which something is to be seen if there are such, side by
-/// side, `most_across` in a row; all of the image if it is not larger.
-Image8 excerpt(const Image8& image, int most_across) {
+struct Excerpt {
+  Image8 image;
+  std::vector<std::uint8_t> counted;  // empty if all is
+};
+
+/// Squares of kTile² from all over what counts of the image, in which something is to be seen if there are
+/// such, side by side, `most_across` in a row; all of the image if it is not larger.
+Excerpt excerpt(const Counted& of, int most_across) {
+  const Image8& image = of.image;
   const int side = kTile * most_across;
-  if (image.width <= side && image.height <= side) return image;
+  if (image.width <= side && image.height <= side)
+    return {image, std::vector<std::uint8_t>(of.texels.begin(), of.texels.end())};
   const int width = std::min(kTile, image.width), height = std::min(kTile, image.height);
-  std::vector<Square> tiles, busy;
+  std::vector<Square> tiles, counted, busy;
   for (int y = 0; y + height <= image.height; y += height) {
     for (int x = 0; x + width <= image.width; x += width) {
-      tiles.push_back({x, y, x + width, y + height});
-      if (!is_even(image, tiles.back())) busy.push_back(tiles.back());
+      const Square& tile = tiles.emplace_back(Square{x, y, x + width, y + height});
+      if (!counts(of, tile)) continue;
+      counted.push_back(tile);
+      if (!is_even(image, tile)) busy.push_back(tile);
     }
   }
+  if (!counted.empty()) tiles = std::move(counted);
   if (!busy.empty()) tiles = std::move(busy);
   const std::size_t count = std::min(tiles.size(), static_cast<std::size_t>(most_across * most_across));
   const auto across = static_cast<int>(std::min(count, static_cast<std::size_t>(most_across)));
   const int down = static_cast<int>(count) / across;
-  Image8 result(across * width, down * height, image.channels, image.encoding);
+  Excerpt result{Image8(across * width, down * height, image.channels, image.encoding), {}};
+  if (!of.texels.empty())
+    result.counted.resize(result.image.pixels.size() / static_cast<std::size_t>(image.channels));
   for (int i = 0; i < across * down; ++i) {
     const Square& tile =
         tiles[static_cast<std::size_t>(i) * tiles.size() / static_cast<std::size_t>(across * down)];
-    for (int y = 0; y < height; ++y)
-      std::copy_n(image.at(tile.x0, tile.y0 + y), width * image.channels,
-                  result.at(i % across * width, i / across * height + y));
+    for (int y = 0; y < height; ++y) {
+      const int to_x = i % across * width, to_y = i / across * height + y;
+      std::copy_n(image.at(tile.x0, tile.y0 + y), width * image.channels, result.image.at(to_x, to_y));
+      for (int x = 0; x < width && !of.texels.empty(); ++x)
+        result.counted[static_cast<std::size_t>(to_y) * static_cast<std::size_t>(across * width) +
+                       static_cast<std::size_t>(to_x + x)] = of.counts(tile.x0 + x, tile.y0 + y) ? 1 : 0;
+    }
   }
   return result;
 }
 
 /// The lowest quality of 1 … 100 at which an image is near enough, or 100.
-int lowest_quality(const Image8& image, TextureFormat format, double least_psnr_db, Content content) {
+int lowest_quality(const Counted& of, TextureFormat format, double least_psnr_db, Content content) {
   int low = 1, high = 100;
   while (low < high) {
     const int middle = (low + high) / 2;
-    if (measured(image, format, middle, content).psnr_db >= least_psnr_db) {
+    if (measured(of, format, middle, content).psnr_db >= least_psnr_db) {
       high = middle;
     } else {
       low = middle + 1;
@@ -170,14 +210,17 @@ std::string mime_type(TextureFormat format) {
   throw Error(ErrorKind::internal, "an unknown format of textures");
 }
 
-double encoding_psnr(const Image8& a, const Image8& b, Content content) {
+double encoding_psnr(const Image8& a, const Image8& b, Content content,
+                     std::span<const std::uint8_t> counted) {
   check_same_shape(a, b);
+  if (std::ranges::none_of(counted, [](std::uint8_t c) { return c != 0; })) counted = {};
+  const Counted of{a, counted};
   const bool is_color = content == Content::colors && a.channels >= 3;
   SquaredError all, busy;
   for (int y = 0; y < a.height; y += kSquare) {
     for (int x = 0; x < a.width; x += kSquare) {
       const Square square{x, y, std::min(x + kSquare, a.width), std::min(y + kSquare, a.height)};
-      const SquaredError error = is_color ? color_error(a, b, square) : data_error(a, b, square);
+      const SquaredError error = is_color ? color_error(of, b, square) : data_error(of, b, square);
       all += error;
       if (!is_even(a, square)) busy += error;
     }
@@ -187,29 +230,30 @@ double encoding_psnr(const Image8& a, const Image8& b, Content content) {
 }
 
 EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
-                              Content content) {
+                              Content content, std::span<const std::uint8_t> counted) {
+  const Counted whole{image, counted};
   const auto without_loss = [&] { return EncodedTexture{encoded(image, format, 0), 0, kNoLoss}; };
   if (format == TextureFormat::png) return without_loss();
   if (!std::isfinite(least_psnr_db))
-    return format == TextureFormat::webp ? without_loss() : measured(image, format, 100, content);
-  const Image8 part = excerpt(image, kTilesAcross);
-  int quality = lowest_quality(part, format, least_psnr_db, content);
-  EncodedTexture result = measured(image, format, quality, content);
+    return format == TextureFormat::webp ? without_loss() : measured(whole, format, 100, content);
+  const Excerpt part = excerpt(whole, kTilesAcross);
+  int quality = lowest_quality({part.image, part.counted}, format, least_psnr_db, content);
+  EncodedTexture result = measured(whole, format, quality, content);
   // The excerpt is not the whole: some steps more may be needed.
   for (int step = 2; result.psnr_db < least_psnr_db && quality < 100; step *= 2) {
     quality = std::min(quality + step, 100);
-    result = measured(image, format, quality, content);
+    result = measured(whole, format, quality, content);
   }
   if (format == TextureFormat::jpeg) return result;
   if (result.psnr_db < least_psnr_db) return without_loss();
   // Drawings and even colours are often smaller without loss.
-  if (encoded(part, format, 0).size() >= encoded(part, format, quality).size()) return result;
+  if (encoded(part.image, format, 0).size() >= encoded(part.image, format, quality).size()) return result;
   EncodedTexture exact = without_loss();
   return exact.bytes.size() < result.bytes.size() ? exact : result;
 }
 
 std::vector<EncodingSample> encoding_samples(const Image8& image, TextureFormat format, Content content) {
-  const Image8 part = excerpt(image, kSampleTilesAcross);
+  const Image8 part = excerpt({image, {}}, kSampleTilesAcross).image;
   const auto texels = static_cast<double>(part.width) * part.height;
   std::vector<EncodingSample> samples;
   const auto add = [&](const std::vector<std::uint8_t>& bytes, bool exact) {

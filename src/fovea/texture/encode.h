@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,11 @@ enum class Content {
 /// Peak signal to noise ratio in dB of stored values, infinite for equal images: of BT.601's Y, Cb and Cr by
 /// 6 : 1 : 1 for colours (the usual PSNR-YUV), alpha as a fourth channel beside them; of the channels as they
 /// are for data. Of the whole image, or of the squares of 16² texels in which `a` shows something (values
-/// differ by more than 8) and 2 dB more if that is less: thin lines on a black image count. Throws
-/// Error(usage) for images of different size or channels.
-double encoding_psnr(const Image8& a, const Image8& b, Content content);
+/// differ by more than 8) and 2 dB more if that is less: thin lines on a black image count. `counted`
+/// [height × width] is 0 for texels that do not count, as nothing shows them; all do if it is empty or none
+/// would. Throws Error(usage) for images of different size or channels.
+double encoding_psnr(const Image8& a, const Image8& b, Content content,
+                     std::span<const std::uint8_t> counted = {});
 
 /// The smallest file of that format that decodes to at least `least_psnr_db` (`encoding_psnr`), or one
 /// without loss if the format has such and none is near enough or it is smaller. JPEG does not store alpha,
@@ -42,7 +45,7 @@ double encoding_psnr(const Image8& a, const Image8& b, Content content);
 /// then the whole is encoded, again at a higher quality if it missed. Deterministic. Throws
 /// Error(unsupported) for sides that the format does not have (WebP 16,383, JPEG 65,535).
 EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
-                              Content content);
+                              Content content, std::span<const std::uint8_t> counted = {});
 
 /// How well a format does on an image at one of its qualities, from few tiles.
 struct EncodingSample {

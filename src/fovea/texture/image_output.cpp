@@ -41,12 +41,13 @@ TextureFormat format_of(const std::string& type, TextureOutput wanted, bool alph
 }
 
 /// As asked for, or JPEG instead of WebP.
-ImageOutput encode(const Image8& image, TextureFormat format, double psnr_db, Content content) {
-  ImageOutput result{encode_to_psnr(image, format, psnr_db, content), format};
+ImageOutput encode(const Image8& image, TextureFormat format, double psnr_db, Content content,
+                   std::span<const std::uint8_t> counted) {
+  ImageOutput result{encode_to_psnr(image, format, psnr_db, content, counted), format};
   if (format != TextureFormat::webp || result.texture.quality > 0 || image.has_alpha() ||
       !std::isfinite(psnr_db))
     return result;
-  EncodedTexture jpeg = encode_to_psnr(image, TextureFormat::jpeg, psnr_db, content);
+  EncodedTexture jpeg = encode_to_psnr(image, TextureFormat::jpeg, psnr_db, content, counted);
   if (jpeg.psnr_db >= psnr_db && jpeg.bytes.size() < result.texture.bytes.size())
     result = {std::move(jpeg), TextureFormat::jpeg};
   return result;
@@ -54,10 +55,11 @@ ImageOutput encode(const Image8& image, TextureFormat format, double psnr_db, Co
 
 /// The nearest encoding that is smaller than `bytes`; none if the format has no quality to lower.
 std::optional<ImageOutput> encode_below(const Image8& image, TextureFormat format, double psnr_db,
-                                        Content content, std::size_t bytes) {
+                                        Content content, std::span<const std::uint8_t> counted,
+                                        std::size_t bytes) {
   constexpr double kStep = 3, kLeast = 20;  // dB; below, an image is no longer that image
   for (; psnr_db >= kLeast; psnr_db -= kStep) {
-    ImageOutput result = encode(image, format, psnr_db, content);
+    ImageOutput result = encode(image, format, psnr_db, content, counted);
     if (result.texture.bytes.size() < bytes) return result;
     if (format == TextureFormat::png) return std::nullopt;
   }
@@ -102,14 +104,15 @@ Image8 without_idle_alpha(Image8 image, const ImageUse& use) {
 
 std::optional<ImageOutput> encode_output(const Image8& image, const ImageUse& use,
                                          const std::string& mime_type, std::uint64_t most_bytes,
-                                         const ImageOutputOptions& options) {
+                                         const ImageOutputOptions& options,
+                                         std::span<const std::uint8_t> counted) {
   const TextureFormat format = output_format(image, mime_type, options);
   const double psnr =
       options.psnr_db >= kMostPsnr ? std::numeric_limits<double>::infinity() : options.psnr_db;
   const Content content = content_of(use);
-  ImageOutput output = encode(image, format, psnr, content);
+  ImageOutput output = encode(image, format, psnr, content, counted);
   if (output.texture.bytes.size() < most_bytes) return output;
-  return encode_below(image, format, std::min(psnr, kMostPsnr), content, most_bytes);
+  return encode_below(image, format, std::min(psnr, kMostPsnr), content, counted, most_bytes);
 }
 
 }  // namespace fovea

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,13 +71,14 @@ Image8 without_idle_alpha(Image8 image, const ImageUse& use);
 /// An encoded file, smaller than `most_bytes`: of the wanted format and as near as asked, then at lower
 /// quality; none if a format has no quality to lower. JPEG is given to images without alpha, others become
 /// PNG; WebP, which has half the resolution for colours, gives way to JPEG where it could be near enough only
-/// without loss. `mime_type` is that of the file before.
+/// without loss. `mime_type` is that of the file before; `counted` as for `encoding_psnr`.
 struct ImageOutput {
   EncodedTexture texture;
   TextureFormat format;
 };
 std::optional<ImageOutput> encode_output(const Image8& image, const ImageUse& use,
                                          const std::string& mime_type, std::uint64_t most_bytes,
-                                         const ImageOutputOptions& options);
+                                         const ImageOutputOptions& options,
+                                         std::span<const std::uint8_t> counted = {});
 
 }  // namespace fovea

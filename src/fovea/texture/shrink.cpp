@@ -219,12 +219,15 @@ class Shrinker {
     return without_idle_alpha(decode_image(result_.model.images[index(image)].bytes), uses_[index(image)]);
   }
 
-  std::optional<ImageOutput> encoded(int image, const Image8& picture) const {
+  /// As near as asked where triangles show it; `faces` are all of them, or none if they are not all known.
+  std::optional<ImageOutput> encoded(int image, const Image8& picture,
+                                     std::span<const AtlasFace> faces) const {
     ImageOutputOptions output = options_.output;
     output.psnr_db = wanted(image).psnr_db;
     const bool is_new = prepared_.new_maps.contains(image);
     return encode_output(picture, uses_[index(image)], before(image).mime_type,
-                         is_new ? std::numeric_limits<std::uint64_t>::max() : before(image).bytes, output);
+                         is_new ? std::numeric_limits<std::uint64_t>::max() : before(image).bytes, output,
+                         read_texels(faces, picture.width, picture.height, context_));
   }
 
   void set(int image, ImageOutput output) {
@@ -280,13 +283,13 @@ class Shrinker {
       if (!warp.is_moved) {
         for (std::size_t i = 0; i < pictures.size(); ++i) {
           if (is_smaller(atlas.images[i]) && std::erase(changing, atlas.images[i]) > 0)
-            finish(atlas.images[i], warp.images[i]);
+            finish(atlas.images[i], warp.images[i], faces);
         }
         return "it would gain nothing";
       }
       std::vector<ImageOutput> outputs;
       for (std::size_t i = 0; i < pictures.size(); ++i) {
-        std::optional<ImageOutput> output = encoded(atlas.images[i], warp.images[i]);
+        std::optional<ImageOutput> output = encoded(atlas.images[i], warp.images[i], warp.to);
         if (!output) return fmt::format("image {} would become larger", atlas.images[i]);
         outputs.push_back(std::move(*output));
       }
@@ -312,7 +315,7 @@ class Shrinker {
       }
       if (is_smaller(image))
         picture = resized(picture, width, height, use.meaning, use.wrap_u, use.wrap_v, context_);
-      finish(image, picture, old);
+      finish(image, picture, faces, old);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
       keep(image, error.message());
@@ -320,8 +323,8 @@ class Shrinker {
   }
 
   /// Encodes the picture; `old` is what it was baked anew from, at the same size, or empty.
-  void finish(int image, const Image8& picture, const Image8& old = {}) {
-    std::optional<ImageOutput> output = encoded(image, picture);
+  void finish(int image, const Image8& picture, std::span<const AtlasFace> faces, const Image8& old = {}) {
+    std::optional<ImageOutput> output = encoded(image, picture, faces);
     if (!output) return keep(image, "in the wanted format it would be larger");
     if (old.width > 0 && !prepared_.new_maps.contains(image) && !is_better(image, old, picture, *output))
       return keep(image, "baked anew it would show no more");
