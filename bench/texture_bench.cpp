@@ -196,7 +196,7 @@ std::vector<Way> all_ways() {
 
 CompareOptions judge(const Request& request) {
   CompareOptions options;
-  options.distance_samples = 100;
+  options.distance_samples = 0;
   if (request.quick) {
     options.size = 256;
     options.views.set = ViewSet::octahedron;

@@ -38,6 +38,13 @@ Json to_json(const Deviation& d, double diagonal) {
           {"max_rel", number_json(d.max / diagonal)}};
 }
 
+Json to_json(const SurfaceDistance& d, double diagonal) {
+  return {{"forward", to_json(d.forward, diagonal)},
+          {"backward", to_json(d.backward, diagonal)},
+          {"mean_rel", number_json(d.mean() / diagonal)},
+          {"hausdorff_rel", number_json(d.hausdorff() / diagonal)}};
+}
+
 Json to_json(const Comparison& c) {
   Json views = Json::array();
   for (const ViewComparison& view : c.views) {
@@ -50,10 +57,7 @@ Json to_json(const Comparison& c) {
   Json json;
   for (const JudgedPass pass : kJudgedPasses) json[name_of(pass)] = to_json(c[pass]);
   json["silhouette_iou"] = c.silhouette_iou;
-  json["distance"] = {{"forward", to_json(c.distance.forward, c.reference_diagonal)},
-                      {"backward", to_json(c.distance.backward, c.reference_diagonal)},
-                      {"mean_rel", number_json(c.distance.mean() / c.reference_diagonal)},
-                      {"hausdorff_rel", number_json(c.distance.hausdorff() / c.reference_diagonal)}};
+  json["distance"] = c.distance ? to_json(*c.distance, c.reference_diagonal) : Json();
   json["views"] = std::move(views);
   return json;
 }
@@ -180,7 +184,7 @@ class Compare : public Verb {
       row(tests[i], {fmt::format("{:.4f}", lit.flip), fmt::format("{:.4f}", base.flip),
                      fmt::format("{:.4f}", lit.ms_ssim), fmt::format("{:.4f}", base.ms_ssim),
                      decibels(lit.psnr), decibels(base.psnr), fmt::format("{:.4f}", c.silhouette_iou),
-                     share_text(c.distance.mean() / c.reference_diagonal)});
+                     c.distance ? share_text(c.distance->mean() / c.reference_diagonal) : "-"});
     }
     session.print(table.text(0));
     session.print(fmt::format(

@@ -44,7 +44,7 @@ TEST(Compare, AModelIsLikeItself) {
     EXPECT_NEAR(same[pass].ms_ssim, 1, 1e-6);
   }
   EXPECT_NEAR(same.silhouette_iou, 1, 1e-12);
-  EXPECT_LT(same.distance.hausdorff(), 1e-6);
+  EXPECT_LT(same.distance->hausdorff(), 1e-6);
 }
 
 TEST(Compare, FewerTrianglesAreLessLikeIt) {
@@ -57,7 +57,7 @@ TEST(Compare, FewerTrianglesAreLessLikeIt) {
     EXPECT_GT(better.ms_ssim, worse.ms_ssim);
     EXPECT_GT(better.psnr, worse.psnr);
     EXPECT_GT(found[i - 1].silhouette_iou, found[i].silhouette_iou);
-    EXPECT_LT(found[i - 1].distance.mean(), found[i].distance.mean());
+    EXPECT_LT(found[i - 1].distance->mean(), found[i].distance->mean());
   }
 }
 
@@ -93,14 +93,14 @@ TEST(Compare, TheSameForAnyThreads) {
   const Comparison a = compare(model, tests, quick(), one)[0], b = compare(model, tests, quick(), three)[0];
   EXPECT_EQ(a[JudgedPass::lit].flip, b[JudgedPass::lit].flip);
   EXPECT_EQ(a[JudgedPass::base_color].ms_ssim, b[JudgedPass::base_color].ms_ssim);
-  EXPECT_EQ(a.distance.forward.mean, b.distance.forward.mean);
+  EXPECT_EQ(a.distance->forward.mean, b.distance->forward.mean);
 }
 
 TEST(Compare, AnEmptyModelIsNothingLikeIt) {
   const Model model = test::model_of(test::icosphere(2)), empty = test::model_of(test::empty_mesh());
   const Comparison c = compared(model, {&empty})[0];
   EXPECT_EQ(c.silhouette_iou, 0);
-  EXPECT_EQ(c.distance.hausdorff(), INFINITY);
+  EXPECT_EQ(c.distance->hausdorff(), INFINITY);
   EXPECT_THROW(compared(empty, {&model}), Error);
 }
 

@@ -110,8 +110,8 @@ OptionList describe(CompareOptions& o) {
       {{"view-size", "Pixels along each side of a view.", &o.size, "pixels", 11, 8192},
        {"pixels-per-degree", "Of the observer that FLIP stands for: 67 is a 4K screen at arm's length.",
         &o.pixels_per_degree, "", 1, 1000},
-       {"distance-samples", "Points on each surface for the distance between them.", &o.distance_samples, "",
-        100, 1e8}});
+       {"distance-samples", "Points on each surface for the distance between them; 0 does not measure it.",
+        &o.distance_samples, "", 0, 1e8}});
   // As pictures have it.
   RenderOptions picture;
   for (Option& option : describe(picture)) {
@@ -176,6 +176,7 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
   for (std::size_t t = 0; t < tests.size(); ++t) {
     summarize(result[t]);
     result[t].reference_diagonal = diagonal(surface);
+    if (options.distance_samples == 0) continue;
     result[t].distance =
         surface_distance(surface, triangles_of(test_scenes[t]), options.distance_samples, context);
   }

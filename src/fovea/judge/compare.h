@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,8 +45,8 @@ struct Comparison {
   /// Over all views: means, but `mse` over all pixels of all views, and `psnr` from that.
   std::array<ImageScores, 2> passes;
   double silhouette_iou = 1;
-  SurfaceDistance distance;       ///< In scene units,
-  double reference_diagonal = 0;  ///< of which this is the diagonal of the reference's box.
+  std::optional<SurfaceDistance> distance;  ///< In scene units, if it was measured,
+  double reference_diagonal = 0;            ///< of which this is the diagonal of the reference's box.
 
   const ImageScores& operator[](JudgedPass pass) const { return passes[static_cast<std::size_t>(pass)]; }
 };
@@ -56,7 +57,7 @@ struct CompareOptions {
   std::int64_t size = 512;   ///< Pixels along each side of a view.
   std::int64_t samples = 2;  ///< As RenderOptions.
   double pixels_per_degree = kFlipPixelsPerDegree;
-  std::int64_t distance_samples = 50000;  ///< On each surface.
+  std::int64_t distance_samples = 50000;  ///< On each surface; 0 does not measure the distance.
 };
 OptionList describe(CompareOptions& options);
 

@@ -56,11 +56,14 @@ Json json_of(const Comparison& c) {
   for (const ViewComparison& view : c.views)
     views.push_back(
         {{"base", json_of(view.passes[0])}, {"lit", json_of(view.passes[1])}, {"iou", view.silhouette_iou}});
+  const auto share = [&](auto distance) {
+    return c.distance ? number(distance(*c.distance) / c.reference_diagonal) : Json("");
+  };
   return {{"base", json_of(c[JudgedPass::base_color])},
           {"lit", json_of(c[JudgedPass::lit])},
           {"iou", c.silhouette_iou},
-          {"mean", number(c.distance.mean() / c.reference_diagonal)},
-          {"hausdorff", number(c.distance.hausdorff() / c.reference_diagonal)},
+          {"mean", share([](const SurfaceDistance& d) { return d.mean(); })},
+          {"hausdorff", share([](const SurfaceDistance& d) { return d.hausdorff(); })},
           {"views", std::move(views)}};
 }
 

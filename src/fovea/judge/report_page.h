@@ -68,7 +68,7 @@ let view = 0, test = 0, mode = "lit", cut = 0.5;
 
 const count = (n) => n.toLocaleString("en");
 const fixed = (x, digits) => (x === null ? "same" : x.toFixed(digits));
-const share = (x) => (x === null ? "\u221e" : (100 * x).toPrecision(3) + " %");
+const share = (x) => (x === "" ? "-" : x === null ? "\u221e" : (100 * x).toPrecision(3) + " %");
 const size = (n) => (n >= 1e6 ? (n / 1e6).toPrecision(3) + " MB" : n >= 1e3 ? (n / 1e3).toPrecision(3) + " kB" : n + " B");
 const total = (m) => kinds.reduce((sum, [kind]) => sum + m.bytes[kind], 0);
 function element(name, text, parent) {

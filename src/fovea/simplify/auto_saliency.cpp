@@ -157,7 +157,7 @@ std::vector<double> small_picture_flips(const Model& original, std::span<const M
   CompareOptions options;
   options.size = 192;
   options.views.set = ViewSet::icosahedron;
-  options.distance_samples = 1;
+  options.distance_samples = 0;
   std::vector<double> flips;
   for (const Comparison& found : compare(original, pointers, options, context)) {
     flips.push_back((found[JudgedPass::base_color].flip_foreground + found[JudgedPass::lit].flip_foreground) /

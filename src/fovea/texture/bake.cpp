@@ -8,6 +8,7 @@
 #include "fovea/base/srgb.h"
 #include "fovea/texture/fill.h"
 #include "fovea/texture/tangent_frame.h"
+#include "fovea/texture/texel_scan.h"
 
 namespace fovea {
 
@@ -44,8 +45,7 @@ MipMap mip_map(const Image8& image, const TexelMeaning& meaning) {
 
 std::vector<Image8> baked(std::span<const BakeSource> sources, const TexelOrigins& origins,
                           std::span<const UvSlopes> slopes, const Context& context) {
-  const Sampler sampler{
-      .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
+  const Sampler sampler = clamping_sampler();
   std::vector<Image8> results;
   for (const BakeSource& source : sources) {
     assert(source.image->width == sources[0].image->width &&

@@ -11,6 +11,7 @@
 #include "fovea/model/texture_use.h"
 #include "fovea/texture/bake.h"
 #include "fovea/texture/fill.h"
+#include "fovea/texture/texel_scan.h"
 
 namespace fovea {
 
@@ -141,8 +142,7 @@ Image8 baked_normals(const SurfaceOrigin& origin, const Model& simplified, const
   const TangentFrames frames(simplified, origin.faces());
   const MipMap texels = map != nullptr ? MipMap(*map, ColorEncoding::linear) : MipMap();
   const std::vector<UvSlopes> slopes = texel_slopes(origin.faces(), origin.faces(), width, height);
-  const Sampler clamp{
-      .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
+  const Sampler clamp = clamping_sampler();
   const auto bent = [&](Vec2d uv, std::uint32_t face) {
     if (map == nullptr) return Vec3d{0, 0, 1};
     const Rgba look =

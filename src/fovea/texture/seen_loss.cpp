@@ -26,8 +26,6 @@ constexpr std::size_t kPoints = std::size_t{1} << 16;
 constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
 /// Half a step of a byte.
 constexpr double kLeastDistance = 0.5 / 255, kLeastLoss = kLeastDistance * kLeastDistance;
-constexpr Sampler kSampler{
-    .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
 
 UvSlopes scaled(const UvSlopes& slopes, double factor) {
   const auto f = static_cast<float>(factor);
@@ -200,9 +198,9 @@ PictureLosses SeenLoss::at(std::uint32_t face, Vec2f was, Vec2f is, float turn, 
                    slopes_now = scaled(now.slopes[face], pixel);
     for (std::size_t k = 0; k < now.images.size(); ++k) {
       const TexelMeaning& meaning = meanings_[k];
-      Rgba before = before_.images[k].sample(was, slopes_before, kSampler);
+      Rgba before = before_.images[k].sample(was, slopes_before, sampler_);
       if (meaning.kind == TexelMeaning::Kind::normal) before = turned(before, turn, false);
-      const double loss = squared_difference(before, now.images[k].sample(is, slopes_now, kSampler), meaning);
+      const double loss = squared_difference(before, now.images[k].sample(is, slopes_now, sampler_), meaning);
       result.all[p] += loss * static_cast<double>(loss_weight(meaning));
       if (meaning.kind != TexelMeaning::Kind::color) continue;
       result.color[p] += loss;

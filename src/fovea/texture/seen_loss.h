@@ -11,6 +11,7 @@
 #include "fovea/texture/mip_map.h"
 #include "fovea/texture/resize.h"
 #include "fovea/texture/texel_origin.h"
+#include "fovea/texture/texel_scan.h"
 
 // Shared inside Fovea, not installed.
 
@@ -77,6 +78,7 @@ class SeenLoss {
   double diagonal_;  // of the model
   View before_;
   std::vector<Point> points_;
+  Sampler sampler_ = clamping_sampler();
 };
 
 }  // namespace fovea

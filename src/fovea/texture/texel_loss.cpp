@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "fovea/base/parallel.h"
+#include "fovea/texture/texel_scan.h"
 
 namespace fovea {
 
@@ -28,8 +29,7 @@ ImageF texel_losses(const Image8& before, const Image8& after, const TexelMeanin
   assert(before.channels == after.channels);
   const int channels = meaning.transparent ? before.channels : before.color_channels();
   const float weight = loss_weight(meaning);
-  const Sampler clamp{
-      .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
+  const Sampler clamp = clamping_sampler();
   ImageF result(places.width, places.height, 1, ColorEncoding::linear);
   parallel_for_or_throw(
       context, static_cast<std::size_t>(places.height), kGrain, [&](std::size_t begin, std::size_t end) {

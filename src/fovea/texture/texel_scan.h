@@ -60,6 +60,11 @@ inline std::array<BilinearTap, 4> bilinear_taps(Vec2d point, int width, int heig
       {{x0, y0, (1 - fx) * (1 - fy)}, {x1, y0, fx * (1 - fy)}, {x0, y1, (1 - fx) * fy}, {x1, y1, fx * fy}}};
 }
 
+/// Texels beyond a border repeat it; linear filters.
+inline Sampler clamping_sampler() {
+  return {.wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp, .mag_filter = {}, .min_filter = {}, .json = {}};
+}
+
 /// What a bilinear filter finds at `uv`, 0 … 1: stored values, 0 … 1, of as many channels as there are.
 inline std::array<double, 4> looked_up(const Image8& image, Vec2d uv, const Sampler& sampler) {
   std::array<double, 4> sum{};
