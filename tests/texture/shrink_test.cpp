@@ -270,6 +270,15 @@ TEST(ShrinkTextures, BytesObeyTheOtherLimits) {
   EXPECT_LE(found.bytes, 20000u);
 }
 
+TEST(ShrinkTextures, BytesLeaveTexelsWhereTheyAre) {
+  ShrinkOptions options;
+  options.max_bytes = 6000;
+  const Shrunk found = shrink(detailed_and_flat(), options);
+  EXPECT_NE(found.atlases.at(0).fixed_because, "");
+  options.moves = TexelMoves::saliency;
+  test::expect_error([&] { shrink(detailed_and_flat(), options); }, ErrorKind::usage, "");
+}
+
 TEST(ShrinkTextures, BytesAreTheSameForAnyNumberOfThreads) {
   ShrinkOptions options;
   options.max_bytes = 9000;

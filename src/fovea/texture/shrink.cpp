@@ -33,9 +33,9 @@ constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 /// smaller copies of a texture, which a warp only mixes.
 constexpr int kLeastReduction = 4;
 
-/// How often texels are moved in search of images that take no more than they may, how often these are
-/// sought at all, and by how much more than they are over they get less.
-constexpr int kMovingRounds = 3, kMostRounds = 8;
+/// How often images that take no more than they may are sought, and by how much more than they are over they
+/// get less.
+constexpr int kMostRounds = 8;
 constexpr double kHaste = 0.99;
 
 /// How an image should be but for what all may take together.
@@ -137,6 +137,8 @@ class Shrinker {
     change.fixed_because = atlas.fixed_because;
     if (change.fixed_because.empty() && texels(atlas) > kMostTexels)
       change.fixed_because = "its images are too large to be in memory together";
+    if (change.fixed_because.empty() && options_.max_bytes)
+      change.fixed_because = "bytes are scarce, and moved texels take more of them";
     if (change.fixed_because.empty() && options_.moves == TexelMoves::none)
       change.fixed_because = "not asked for";
     if (change.fixed_because.empty()) change.fixed_because = move(atlas, changing, change);
@@ -381,12 +383,7 @@ Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, S
   double goal = most;
   std::vector<WantedImage> last;
   for (int round = 0;; ++round) {
-    // What moves, or is baked anew, takes other bytes than was tried: a few times with less, then it does not
-    // move any more, until nothing gets smaller.
-    if (round == kMovingRounds) {
-      options.moves = TexelMoves::none;
-      goal = most;
-    }
+    // What is baked anew takes other bytes than was tried: again with less, until nothing gets smaller.
     std::vector<WantedImage> wanted = budget.choose(goal);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (wanted[i].width < 1) wanted[i] = limits[i];
@@ -396,7 +393,7 @@ Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, S
     if (bytes <= most) return result;
     const bool is_least = wanted == last || round >= kMostRounds;
     last = std::move(wanted);
-    if (is_least && options.moves == TexelMoves::none) {
+    if (is_least) {
       context.report(
           "bytes-missed",
           fmt::format("image files take {} bytes, {} more than asked for: no smaller ones were found",
@@ -419,6 +416,9 @@ void check_options(const Model& model, const ShrinkOptions& options) {
     if (!(scale > 0 && scale <= 1))
       throw Error(ErrorKind::usage, fmt::format("a scale of {}, not above 0 up to 1", scale));
   }
+  if (options.max_bytes && (options.moves == TexelMoves::saliency || options.moves == TexelMoves::frequency))
+    throw Error(ErrorKind::usage, "--texture-bytes leaves texels where they are: moved ones take more bytes",
+                {}, "leave out --warp, or ask for sizes instead of bytes");
 }
 
 }  // namespace
@@ -436,7 +436,7 @@ OptionList describe(ShrinkOptions& o) {
        "texels", 0, 1 << 16},
       {"texture-bytes",
        "Bytes of all image files together, at most: sizes and qualities are chosen so that least is lost of "
-       "what is seen.",
+       "what is seen; texels do not move.",
        &o.max_bytes, "bytes", 1},
       {"warp",
        "Move texels within textures to where they matter: balanced by what would be lost, where it shows and "

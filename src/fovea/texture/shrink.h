@@ -85,12 +85,12 @@ struct Shrunk {
 /// Sides are at least 1.
 ///
 /// With `max_bytes` sizes and qualities are chosen image by image so that least is lost (byte_budget.h), and
-/// again with less if moved texels make files larger; the other limits hold too. What cannot change takes
-/// what it takes: if all is at its least and still too large, that is reported ("bytes-missed").
+/// again with less if they do not fit; no texels move, and the other limits hold too. What cannot change
+/// takes what it takes: if all is at its least and still too large, that is reported ("bytes-missed").
 ///
 /// `field` [#meshes][#V] says how much is looked at, 0 … 1; empty for alike everywhere. One atlas after the
-/// other, each in parallel, all of its images in memory. Throws Error(usage) for options out of range and for
-/// a field or an original of another model, Error(cancelled).
+/// other, each in parallel, all of its images in memory. Throws Error(usage) for options out of range or that
+/// do not go together, and for a field or an original of another model, Error(cancelled).
 Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
                        Context& context);
 
