@@ -40,7 +40,9 @@ TEST(WarpAtlas, GivesTexelsToDetail) {
   const Model model = test::textured(test::grid(24, 24), 1);
   const AtlasWarp found = warp(model, busy_in_the_middle(192), 48);
   EXPECT_TRUE(found.is_moved);
-  EXPECT_LT(found.loss, 0.85 * found.plain_loss);
+  // What is busy is a ninth of the image; with half as many texels again along a side it would lose less than
+  // half.
+  EXPECT_LT(found.loss, 0.5 * found.plain_loss);
   EXPECT_EQ(found.images.at(0).width, 48);
   check(found.model.meshes[0].surface);
   const auto area = [](const AtlasFace& f) { return cross(f.uv[1] - f.uv[0], f.uv[2] - f.uv[0]); };

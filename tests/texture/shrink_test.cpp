@@ -270,6 +270,18 @@ TEST(ShrinkTextures, BytesObeyTheOtherLimits) {
   EXPECT_LE(found.bytes, 20000u);
 }
 
+TEST(ShrinkTextures, TexelsMoveWhereASideBecomesAQuarterOrLess) {
+  ShrinkOptions options;
+  options.scale = 0.3;
+  const auto why = [&] { return shrink(detailed_and_flat(), options).atlases.at(0).fixed_because; };
+  EXPECT_THAT(why(), testing::HasSubstr("a quarter"));
+  options.scale = 0.25;
+  EXPECT_THAT(why(), testing::Not(testing::HasSubstr("a quarter")));
+  options.scale = 0.3;
+  options.moves = TexelMoves::saliency;  // published ways move always
+  EXPECT_THAT(why(), testing::Not(testing::HasSubstr("a quarter")));
+}
+
 TEST(ShrinkTextures, BytesLeaveTexelsWhereTheyAre) {
   ShrinkOptions options;
   options.max_bytes = 6000;

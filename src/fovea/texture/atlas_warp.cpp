@@ -29,8 +29,6 @@ constexpr double kGoodLoss = 0.9;
 constexpr int kLeastOversampling = 2, kMostOversampling = 8, kTrialPart = 2;
 /// And of that size at most, in texels along the longer side, if it is more than the least.
 constexpr int kLongestBaked = 4096;
-/// Mean squared difference below which nothing is lost: that of half a step of a byte.
-constexpr double kLeastLoss = 0.25 / (255.0 * 255.0);
 /// Part of the texels that may show two places at once; rasterisation alone makes some.
 constexpr double kMostConflicts = 5e-3;
 
@@ -148,6 +146,8 @@ class Warper {
     return importance_of(maps, aim);
   }
   const TextureImportance& maps() const { return maps_; }
+  /// Whether pictures see no difference without a warp either; after `unmoved`.
+  bool loses_nothing() const { return plain_loss_.is_nothing(); }
 
   /// Where a warp takes the triangles; none if it folds something over.
   std::optional<AtlasWarp> moved(Warp warp) const {
@@ -239,7 +239,7 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
   AtlasWarp best = warper.unmoved();
   best.model = model;
   const double plain_loss = best.loss;
-  if (plain_loss < kLeastLoss) return best;
+  if (warper.loses_nothing()) return best;
   ImageF importance = warper.importance(aim);
   WarpOptions asked = options;
   if (aim == WarpAim::frequency) asked.rigidity = 0;

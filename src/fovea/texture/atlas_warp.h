@@ -51,9 +51,10 @@ struct AtlasWarp {
 
 /// Moves the texels of an atlas that may move (`Atlas::fixed_because`) and bakes its images anew through the
 /// triangles (bake.h), at the wanted sizes. A warp that brings texels of two triangles to one place or turns
-/// one over is not taken; then one with twice the floor is tried, four times at most. If `measured`, so it
-/// goes until a tenth is gained over not moving, and what loses least is taken. If no warp is, images are
-/// `resized` from the filled ones.
+/// one over is not taken; then one with twice the floor is tried, four times at most. If `measured`, nor is
+/// one by which a picture is worse (seen_loss.h), and so it goes until a tenth is gained over not moving;
+/// what loses least is taken. Warps are tried at half the resolution of the bake. If none is taken, images
+/// are `resized` from the filled ones.
 ///
 /// `rebake`: where places of a simplified surface are on its original, for images that have one.
 ///

@@ -44,8 +44,8 @@ double squared_difference(const Rgba& was, const Rgba& is, const TexelMeaning& m
   return static_cast<double>(r * r + g * g + b * b + a * a);
 }
 
-}  // namespace
-
+/// How coordinates change along two directions on the surface, square to each other, by a unit of length in
+/// the scene where a mesh is shown largest: of [#faces], 0 where a triangle has no area.
 std::vector<UvSlopes> surface_slopes(const Model& model, std::span<const AtlasFace> faces) {
   const std::vector<double> scales = largest_scales(model);
   std::vector<UvSlopes> result(faces.size());
@@ -67,6 +67,8 @@ std::vector<UvSlopes> surface_slopes(const Model& model, std::span<const AtlasFa
   return result;
 }
 
+}  // namespace
+
 void PictureLosses::add(const PictureLosses& other, double weight) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i] += weight * other.all[i];
@@ -81,6 +83,8 @@ double PictureLosses::mean() const {
     product *= std::max(all[i], kLeastLoss) * std::max(color[i], kLeastLoss);
   return std::pow(product, 0.5 / static_cast<double>(all.size()));
 }
+
+bool PictureLosses::is_nothing() const { return !is_worse_somewhere({}); }
 
 bool PictureLosses::is_worse_somewhere(const PictureLosses& than) const {
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -160,6 +164,9 @@ PictureLosses SeenLoss::of(std::span<const AtlasFace> to, std::span<const std::a
     count += counts[chunk];
   }
   mean.add(sum, 1 / count);
+  if (std::ranges::none_of(meanings_,
+                           [](const TexelMeaning& m) { return m.kind == TexelMeaning::Kind::color; }))
+    mean.color = mean.all;
   return mean;
 }
 

@@ -17,21 +17,18 @@
 
 namespace fovea {
 
-/// How coordinates change along two directions on the surface, square to each other, by a unit of length in
-/// the scene where a mesh is shown largest: of [#faces], 0 where a triangle has no area.
-std::vector<UvSlopes> surface_slopes(const Model& model, std::span<const AtlasFace> faces);
-
 inline constexpr std::size_t kPictureSizes = 3;
 /// Differences of pictures in which a model is 512, 1024 and 2048 pixels long, of shown values, 0 … 1.
 struct PictureLosses {
   std::array<double, kPictureSizes>
       all{};  ///< Squared, of all images, weighted by `loss_weight`: as PSNR counts.
-  std::array<double, kPictureSizes> color{};  ///< Squared, of colours alone.
-  std::array<double, kPictureSizes>
-      distance{};  ///< Of colours alone, not squared: nearer to what FLIP counts.
+  std::array<double, kPictureSizes> color{};     ///< Of colours alone; as `all` without such.
+  std::array<double, kPictureSizes> distance{};  ///< Of colours, not squared: nearer to what FLIP counts.
 
   /// The geometric mean of the first two; each counts for half a step of a byte at least.
   double mean() const;
+  /// All are below that.
+  bool is_nothing() const;
   bool is_worse_somewhere(const PictureLosses& than) const;
   void add(const PictureLosses& other, double weight);
 };

@@ -137,10 +137,10 @@ class Shrinker {
     change.fixed_because = atlas.fixed_because;
     if (change.fixed_because.empty() && texels(atlas) > kMostTexels)
       change.fixed_because = "its images are too large to be in memory together";
-    if (change.fixed_because.empty() && options_.max_bytes)
-      change.fixed_because = "bytes are scarce, and moved texels take more of them";
     if (change.fixed_because.empty() && options_.moves == TexelMoves::none)
       change.fixed_because = "not asked for";
+    if (change.fixed_because.empty() && options_.max_bytes)
+      change.fixed_because = "bytes are scarce, and moved texels take more of them";
     if (change.fixed_because.empty()) change.fixed_because = move(atlas, changing, change);
     if (change.fixed_because.empty()) return;
     const bool fill = atlas.fixed_because.empty();
