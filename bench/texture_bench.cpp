@@ -112,6 +112,15 @@ Shrunk shrunk(const Model& model, double scale, const ImageOutputOptions& output
   return shrink_textures(model, options, field, context);
 }
 
+Model within_bytes(const Model& model, std::uint64_t most, std::int64_t pixels, const ImageOutputOptions& output) {
+  Context context;
+  ShrinkOptions options;
+  options.shown_pixels = static_cast<double>(pixels);
+  options.max_bytes = static_cast<std::int64_t>(most);
+  options.output = output;
+  return shrink_textures(model, options, {}, context).model;
+}
+
 // --- The protocol of Yang et al. 2016: few triangles, few texels ----------------------------------------
 
 /// A way to make a model small in triangles and in texels.
@@ -336,7 +345,7 @@ Fit fitted(const Model& original, const Model& small, std::uint64_t most, const 
 }
 
 void print_equal_bytes(const std::vector<Subject>& subjects, const Request& request) {
-  constexpr std::array<const char*, 3> kNames{"plain", "filled", "ours"};
+  constexpr std::array<const char*, 4> kNames{"plain", "filled", "ours", "by bytes"};
   constexpr std::array kParts{2, 4, 8};
   fmt::print(
       "## Equal bytes\n\n"
@@ -350,19 +359,20 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
     double psnr = 0, ms_ssim = 0, log_flip = 0;
     int better = 0, worse = 0;
   };
-  std::array<std::array<std::array<Sum, 2>, 3>, 3> sums{};
+  std::array<std::array<std::array<Sum, 2>, 4>, 3> sums{};
   for (const Subject& subject : subjects) {
     const Model model = subject.make(), large = without_loss(model);
     for (std::size_t d = 0; d < kParts.size(); ++d) {
       const double scale = 1.0 / kParts[d];
       std::vector<Model> results{plainly_resized(model, scale, request.files)};
       const std::uint64_t most = image_bytes(results[0]);
-      std::array<double, 3> near{request.files.psnr_db};
+      std::array<double, 4> near{request.files.psnr_db};
       for (const TexelMoves moves : {TexelMoves::none, TexelMoves::balanced}) {
         Fit fit = fitted(model, shrunk(large, scale, kWithoutLoss, moves).model, most, request);
         near[results.size()] = fit.psnr_db;
         results.push_back(fit.bytes > 0 ? std::move(fit.model) : model);
       }
+      results.push_back(within_bytes(large, most, judge(request).size, request.files));
       const std::vector<Comparison> found = compared(model, results, request);
       for (std::size_t w = 0; w < results.size(); ++w) {
         keep(results[w], fmt::format("{}-{}-{}", subject.name, kParts[d], kNames[w]), request);

@@ -104,6 +104,7 @@ class TextureVerb : public Verb {
         session.phase("saliency", input_, [&] { return looked_at(input, session); });
     const std::vector<TexelDensity> densities =
         session.phase("views", input_, [&] { return texels_seen(input.model, session.context); });
+    if (shown_height_) options_.shown_pixels = static_cast<double>(*shown_height_);
     if (!densities.empty()) options_.scales = needed_scales(densities, static_cast<double>(*shown_height_));
     const Shrunk result = session.phase(
         "textures", input_, [&] { return shrink_textures(input.model, options_, field, session.context); });

@@ -8,7 +8,6 @@
 #include <functional>
 
 #include "fovea/texture/tangent_frame.h"
-#include "fovea/texture/texel_loss.h"
 #include "support/meshes.h"
 #include "support/pictures.h"
 #include "support/textured.h"
@@ -139,32 +138,6 @@ TEST(FillBetween, LeavesWhatTrianglesCoverAndWhatIsMixedIntoIt) {
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) EXPECT_EQ(*image.at(x, y), x < 16 ? 50 : 90) << x << ' ' << y;
   }
-}
-
-TEST(TexelLosses, AreSquaredDifferencesWhereTheyAre) {
-  const Model model = test::textured(test::grid(1, 1), 1);
-  const std::vector<AtlasFace> faces = faces_of(model);
-  Context context;
-  const TexelOrigins same = texel_origins(faces, faces, {}, 8, 8, context);
-  Image8 before(8, 8, 3, ColorEncoding::srgb), after = before;
-  after.at(2, 5)[0] = 51;  // a fifth
-  const ImageF lost = texel_losses(before, after, {Kind::color}, same, context);
-  for (int y = 0; y < 8; ++y) {
-    for (int x = 0; x < 8; ++x)
-      EXPECT_NEAR(static_cast<double>(*lost.at(x, y)), x == 2 && y == 5 ? 0.04 : 0, 1e-6);
-  }
-  EXPECT_NEAR(static_cast<double>(*texel_losses(before, after, {Kind::data}, same, context).at(2, 5)), 0.01,
-              1e-6);
-}
-
-TEST(TexelLosses, FollowTheTriangles) {
-  const Model model = test::textured(test::grid(1, 1), 1);
-  const std::vector<AtlasFace> from = faces_of(model), to = moved(from, quarter_turn);
-  const Image8 image = test::pattern(32, 32), turned = bake(image, Kind::data, model, from, to, 32, 32);
-  Context context;
-  const ImageF lost =
-      texel_losses(image, turned, {Kind::data}, texel_origins(from, to, {}, 32, 32, context), context);
-  for (const float x : lost.pixels) EXPECT_NEAR(static_cast<double>(x), 0, 1e-9);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(SeenLoss, IsThatOfShownValues) {
   const Model model = test::textured(test::grid(3, 3), 1);
   const Image8 was = even(16, 100), is[] = {even(4, 110)};
   const PictureLosses found = loss_of(model, was).of(faces_of(model), {}, is, {});
-  for (std::size_t i = 0; i < kPictureSizes; ++i) {
+  for (std::size_t i = 0; i < kPictureSizes.size(); ++i) {
     EXPECT_NEAR(found.color[i], 3 * std::pow(10.0 / 255, 2), 1e-6);
     EXPECT_NEAR(found.all[i], found.color[i], 1e-9);
     EXPECT_NEAR(found.distance[i], std::sqrt(3.0) * 10 / 255, 1e-6);
@@ -50,7 +50,7 @@ TEST(SeenLoss, IsNothingForTheSameImages) {
   const Model model = test::textured(test::grid(3, 3), 1);
   const Image8 image = checks(64, 4);
   const PictureLosses found = loss_of(model, image).of(faces_of(model), {}, {&image, 1}, {});
-  for (std::size_t i = 0; i < kPictureSizes; ++i) EXPECT_EQ(found.all[i], 0);
+  for (std::size_t i = 0; i < kPictureSizes.size(); ++i) EXPECT_EQ(found.all[i], 0);
 }
 
 TEST(SeenLoss, PicturesThatAreSmallSeeNoFineDetail) {

@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-LadderStep step(double bytes, double loss) { return {1, 1, 40, false, 0, bytes, loss}; }
+LadderStep step(double bytes, double loss) { return {0, bytes, loss}; }
 
 std::vector<double> bytes_of(const SizeLadder& ladder) {
   std::vector<double> bytes;

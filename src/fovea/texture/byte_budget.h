@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,9 +8,10 @@
 #include "fovea/model/field.h"
 #include "fovea/model/model.h"
 #include "fovea/texture/atlas.h"
+#include "fovea/texture/image_loss.h"
 #include "fovea/texture/image_output.h"
 #include "fovea/texture/image_use.h"
-#include "fovea/texture/size_ladder.h"
+#include "fovea/texture/image_ways.h"
 
 // Shared inside Fovea, not installed.
 
@@ -20,16 +20,20 @@ namespace fovea {
 /// Finds sizes and qualities for a model's images whose files together may take so many bytes, so that least
 /// is lost of what is seen.
 ///
-/// Each image may be stored in the ways of `image_steps`, from its limit down to 1/32 of the sides that it
-/// has. What a way loses counts by the surface that shows the image (`seen_area`), where that is looked at.
-/// Steps are taken where they lose least for each byte they save (`choose_steps`); then images are encoded as
-/// chosen, by resizing alone, and estimates corrected by what that takes, until it fits.
+/// Each image is stored in many ways, from its limit down to 1/32 of the sides that it has (`image_ways`).
+/// What pictures of each of some sizes lose by a way is seen on the surface that shows the image, where that
+/// is looked at; squared, it adds up over the images, of colours alone and of all. Steps are taken where they
+/// lose least for each byte they save (`choose_steps`), so that the product of these sums is least: a picture
+/// of any size counts by how many times more or less it loses. More qualities are tried beside what is
+/// chosen, and chosen again.
 class ByteBudget {
  public:
-  /// Images that `limits` [#images] have no size for take what they take. Refers to the model and the
-  /// atlases. Throws Error(cancelled).
+  /// Images that `limits` [#images] have no size for take what they take. `pixels` as for ImageSights.
+  /// Refers to the model and the atlases. Nothing that takes more than `bytes` by itself is looked at. Throws
+  /// Error(cancelled).
   ByteBudget(const Model& model, std::span<const Atlas> atlases, std::span<const WantedImage> limits,
-             const ImageOutputOptions& options, std::span<const VertexField> field, Context& context);
+             const ImageOutputOptions& options, std::span<const VertexField> field,
+             std::vector<double> pixels, double bytes, Context& context);
 
   /// [#images] Of those whose files fit what loses least; the fewest bytes of all if none do.
   std::vector<WantedImage> choose(double bytes);
@@ -38,32 +42,35 @@ class ByteBudget {
   struct Candidate {
     std::size_t image = 0;
     const Atlas* atlas = nullptr;
-    Image8 whole{};                              // as it is to be resized; empty if there is no room for it
-    std::vector<LadderStep> steps{};             // as estimated
-    double correction = 1;                       // of their bytes
-    std::vector<std::optional<double>> exact{};  // [#steps] bytes of those that were encoded
+    double area = 0;  // of the surface that shows it, as it is looked at
+    ImageLimits limits{};
+    std::vector<ImageWay> ways{};
+    bool is_refined = false;
   };
-  using Numbers = std::vector<std::size_t>;  // [#candidates] of steps
+  using Numbers = std::vector<std::size_t>;  // [#candidates] of ways
+  using Sums = std::vector<double>;          // [#pixels × 2] of losses: of colours, and of all
 
-  Image8 whole(const Candidate& candidate) const;
+  ImageSights sights(const Candidate& candidate) const;
   /// All triangles that show it; none if they are not known.
   std::vector<AtlasFace> known_faces(const Candidate& candidate) const;
-  Image8 picture(const Candidate& candidate, int width, int height) const;
-  void measure(Candidate& candidate, const ImageF& weights, double area) const;
-  double encoded_bytes(const Candidate& candidate, const LadderStep& step) const;
+  void measure(Candidate& candidate) const;
+  /// Tries more ways that take no more than so many bytes.
+  void refine(Candidate& candidate, double bytes) const;
+  /// Adds the losses of a way.
+  void add(Sums& sums, const Candidate& candidate, const ImageWay& way) const;
   Numbers numbers_within(double bytes) const;
-  double encode(const Numbers& numbers);
-  double loss(const Numbers& numbers) const;
   std::vector<WantedImage> wanted(const Numbers& numbers) const;
 
   const Model& model_;
   std::vector<WantedImage> limits_;
+  std::span<const VertexField> field_;
+  std::vector<double> pixels_;
+  double most_bytes_;
   ImageOutputOptions options_;
   Context& context_;
   std::vector<ImageUse> uses_;
   std::vector<Candidate> candidates_;
   double kept_bytes_ = 0;
-  bool is_roomy_ = true;
 };
 
 }  // namespace fovea

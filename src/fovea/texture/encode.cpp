@@ -13,8 +13,8 @@ namespace fovea {
 
 namespace {
 
-constexpr int kTile = 64, kTilesAcross = 8, kSampleTilesAcross = 4;
-constexpr std::array kSampleQualities{25, 55, 78, 90, 97};
+/// Tiles that stand for an image, in texels, and how many of them are side by side at most.
+constexpr int kTile = 64, kTilesAcross = 8;
 /// Squares whose error is looked at, in texels; nothing is to be seen where values are no further apart than
 /// kEven. Where something is, a file may be worse than asked for by so many dB.
 constexpr int kSquare = 16, kEven = 8;
@@ -40,6 +40,12 @@ struct Counted {
                                     static_cast<std::size_t>(x)] != 0;
   }
 };
+
+/// All texels instead of none.
+Counted with_any(const Counted& of) {
+  const bool any = std::ranges::any_of(of.texels, [](std::uint8_t c) { return c != 0; });
+  return {of.image, any ? of.texels : std::span<const std::uint8_t>{}};
+}
 
 /// A part of an image: columns [x0, x1), rows [y0, y1).
 struct Square {
@@ -134,23 +140,16 @@ Image8 with_channels(const Image8& image, int channels) {
   return result;
 }
 
-EncodedTexture measured(const Counted& of, TextureFormat format, int quality, Content content) {
-  EncodedTexture result{encoded(of.image, format, quality), quality, 0};
-  const Image8 decoded = with_channels(decode_image(result.bytes), of.image.channels);
-  result.psnr_db = encoding_psnr(of.image, decoded, content, of.texels);
-  return result;
-}
-
 struct Excerpt {
   Image8 image;
   std::vector<std::uint8_t> counted;  // empty if all is
 };
 
 /// Squares of kTile² from all over what counts of the image, in which something is to be seen if there are
-/// such, side by side, `most_across` in a row; all of the image if it is not larger.
-Excerpt excerpt(const Counted& of, int most_across) {
+/// such, side by side; all of the image if it is not larger.
+Excerpt excerpt(const Counted& of) {
   const Image8& image = of.image;
-  const int side = kTile * most_across;
+  constexpr int side = kTile * kTilesAcross;
   if (image.width <= side && image.height <= side)
     return {image, std::vector<std::uint8_t>(of.texels.begin(), of.texels.end())};
   const int width = std::min(kTile, image.width), height = std::min(kTile, image.height);
@@ -165,8 +164,8 @@ Excerpt excerpt(const Counted& of, int most_across) {
   }
   if (!counted.empty()) tiles = std::move(counted);
   if (!busy.empty()) tiles = std::move(busy);
-  const std::size_t count = std::min(tiles.size(), static_cast<std::size_t>(most_across * most_across));
-  const auto across = static_cast<int>(std::min(count, static_cast<std::size_t>(most_across)));
+  const std::size_t count = std::min(tiles.size(), static_cast<std::size_t>(kTilesAcross * kTilesAcross));
+  const auto across = static_cast<int>(std::min(count, static_cast<std::size_t>(kTilesAcross)));
   const int down = static_cast<int>(count) / across;
   Excerpt result{Image8(across * width, down * height, image.channels, image.encoding), {}};
   if (!of.texels.empty())
@@ -190,7 +189,7 @@ int lowest_quality(const Counted& of, TextureFormat format, double least_psnr_db
   int low = 1, high = 100;
   while (low < high) {
     const int middle = (low + high) / 2;
-    if (measured(of, format, middle, content).psnr_db >= least_psnr_db) {
+    if (encode_at(of.image, format, middle, content, of.texels).psnr_db >= least_psnr_db) {
       high = middle;
     } else {
       low = middle + 1;
@@ -213,8 +212,7 @@ std::string mime_type(TextureFormat format) {
 double encoding_psnr(const Image8& a, const Image8& b, Content content,
                      std::span<const std::uint8_t> counted) {
   check_same_shape(a, b);
-  if (std::ranges::none_of(counted, [](std::uint8_t c) { return c != 0; })) counted = {};
-  const Counted of{a, counted};
+  const Counted of = with_any({a, counted});
   const bool is_color = content == Content::colors && a.channels >= 3;
   SquaredError all, busy;
   for (int y = 0; y < a.height; y += kSquare) {
@@ -229,20 +227,28 @@ double encoding_psnr(const Image8& a, const Image8& b, Content content,
   return busy.texels > 0 ? std::min(whole, psnr(busy.mean()) + kBusyDb) : whole;
 }
 
+EncodedTexture encode_at(const Image8& image, TextureFormat format, int quality, Content content,
+                         std::span<const std::uint8_t> counted) {
+  if (quality == 0) return {encoded(image, format, 0), 0, kNoLoss};
+  EncodedTexture result{encoded(image, format, quality), quality, 0};
+  const Image8 decoded = with_channels(decode_image(result.bytes), image.channels);
+  result.psnr_db = encoding_psnr(image, decoded, content, counted);
+  return result;
+}
+
 EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
                               Content content, std::span<const std::uint8_t> counted) {
-  const Counted whole{image, counted};
-  const auto without_loss = [&] { return EncodedTexture{encoded(image, format, 0), 0, kNoLoss}; };
+  const auto without_loss = [&] { return encode_at(image, format, 0, content); };
   if (format == TextureFormat::png) return without_loss();
   if (!std::isfinite(least_psnr_db))
-    return format == TextureFormat::webp ? without_loss() : measured(whole, format, 100, content);
-  const Excerpt part = excerpt(whole, kTilesAcross);
+    return format == TextureFormat::webp ? without_loss() : encode_at(image, format, 100, content, counted);
+  const Excerpt part = excerpt({image, counted});
   int quality = lowest_quality({part.image, part.counted}, format, least_psnr_db, content);
-  EncodedTexture result = measured(whole, format, quality, content);
+  EncodedTexture result = encode_at(image, format, quality, content, counted);
   // The excerpt is not the whole: some steps more may be needed.
   for (int step = 2; result.psnr_db < least_psnr_db && quality < 100; step *= 2) {
     quality = std::min(quality + step, 100);
-    result = measured(whole, format, quality, content);
+    result = encode_at(image, format, quality, content, counted);
   }
   if (format == TextureFormat::jpeg) return result;
   if (result.psnr_db < least_psnr_db) return without_loss();
@@ -250,26 +256,6 @@ EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double 
   if (encoded(part.image, format, 0).size() >= encoded(part.image, format, quality).size()) return result;
   EncodedTexture exact = without_loss();
   return exact.bytes.size() < result.bytes.size() ? exact : result;
-}
-
-std::vector<EncodingSample> encoding_samples(const Image8& image, TextureFormat format, Content content) {
-  const Image8 part = excerpt({image, {}}, kSampleTilesAcross).image;
-  const auto texels = static_cast<double>(part.width) * part.height;
-  std::vector<EncodingSample> samples;
-  const auto add = [&](const std::vector<std::uint8_t>& bytes, bool exact) {
-    EncodingSample& sample = samples.emplace_back();
-    sample.bytes_per_texel = static_cast<double>(bytes.size()) / texels;
-    sample.psnr_db = kNoLoss;
-    if (exact) return;
-    const Image8 decoded = with_channels(decode_image(bytes), part.channels);
-    sample.psnr_db = encoding_psnr(part, decoded, content);
-    sample.mean_squared_error = mean_squared_error(part, decoded);
-  };
-  if (format != TextureFormat::png) {
-    for (const int quality : kSampleQualities) add(encoded(part, format, quality), false);
-  }
-  if (format != TextureFormat::jpeg) add(encoded(part, format, 0), true);
-  return samples;
 }
 
 }  // namespace fovea

@@ -36,6 +36,10 @@ enum class Content {
 double encoding_psnr(const Image8& a, const Image8& b, Content content,
                      std::span<const std::uint8_t> counted = {});
 
+/// At a quality of 1 … 100, or 0 without loss, which JPEG does not have; its error as `encoding_psnr` counts.
+EncodedTexture encode_at(const Image8& image, TextureFormat format, int quality, Content content,
+                         std::span<const std::uint8_t> counted = {});
+
 /// The smallest file of that format that decodes to at least `least_psnr_db` (`encoding_psnr`), or one
 /// without loss if the format has such and none is near enough or it is smaller. JPEG does not store alpha,
 /// which has to be opaque or of no use, and where 100 is not near enough it is 100. An infinite
@@ -46,15 +50,5 @@ double encoding_psnr(const Image8& a, const Image8& b, Content content,
 /// Error(unsupported) for sides that the format does not have (WebP 16,383, JPEG 65,535).
 EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double least_psnr_db,
                               Content content, std::span<const std::uint8_t> counted = {});
-
-/// How well a format does on an image at one of its qualities, from few tiles.
-struct EncodingSample {
-  double psnr_db = 0;             ///< `encoding_psnr`, infinite without loss,
-  double mean_squared_error = 0;  ///< and that of all channels, 0 … 255².
-  double bytes_per_texel = 0;
-};
-
-/// Some qualities from low to high, the same ones for all images, then without loss if the format has such.
-std::vector<EncodingSample> encoding_samples(const Image8& image, TextureFormat format, Content content);
 
 }  // namespace fovea

@@ -30,12 +30,21 @@ enum class SizeReason {
   bytes,  ///< What all files may take together.
 };
 
+/// What file an image becomes, where that is known beforehand.
+struct FileChoice {
+  TextureFormat format = TextureFormat::png;
+  int quality = 0;   ///< As EncodedTexture's.
+  bool fill = true;  ///< What lies between its charts is filled before the image gets smaller.
+  friend bool operator==(const FileChoice&, const FileChoice&) = default;
+};
+
 /// How an image is to become.
 struct WantedImage {
   int width = 0, height = 0;
   double psnr_db = 0;  ///< Of the encoding.
   bool stays = false;  ///< Its file does, unless texels move.
   SizeReason reason = SizeReason::none;
+  std::optional<FileChoice> file = {};  ///< Instead of looking for what is as near as `psnr_db`.
   friend bool operator==(const WantedImage&, const WantedImage&) = default;
 };
 

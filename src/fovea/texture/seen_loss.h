@@ -10,6 +10,7 @@
 #include "fovea/model/model.h"
 #include "fovea/texture/mip_map.h"
 #include "fovea/texture/resize.h"
+#include "fovea/texture/seen_points.h"
 #include "fovea/texture/texel_origin.h"
 #include "fovea/texture/texel_scan.h"
 
@@ -17,13 +18,12 @@
 
 namespace fovea {
 
-inline constexpr std::size_t kPictureSizes = 3;
-/// Differences of pictures in which a model is 512, 1024 and 2048 pixels long, of shown values, 0 … 1.
+/// Differences of pictures of `kPictureSizes`, of shown values, 0 … 1.
 struct PictureLosses {
-  std::array<double, kPictureSizes>
-      all{};  ///< Squared, of all images, weighted by `loss_weight`: as PSNR counts.
-  std::array<double, kPictureSizes> color{};     ///< Of colours alone; as `all` without such.
-  std::array<double, kPictureSizes> distance{};  ///< Of colours, not squared: nearer to what FLIP counts.
+  using Losses = std::array<double, kPictureSizes.size()>;
+  Losses all{};       ///< Squared, of all images, weighted by `loss_weight`: as PSNR counts.
+  Losses color{};     ///< Of colours alone; as `all` without such.
+  Losses distance{};  ///< Of colours, not squared: nearer to what FLIP counts.
 
   /// The geometric mean of the first two; each counts for half a step of a byte at least.
   double mean() const;
@@ -55,26 +55,19 @@ class SeenLoss {
   ImageF map(const TexelOrigins& places, std::span<const Image8> images, const Context& context) const;
 
  private:
-  struct Point {
-    std::uint32_t face;
-    std::array<double, 3> weights;  // of its corners
-    double counts;
-  };
   /// Images and how they lie on the surface.
   struct View {
-    std::vector<UvSlopes> slopes;  // [#faces]
+    std::vector<UvSlopes> slopes;  // [#faces] `picture_slopes`
     std::vector<MipMap> images;
   };
-  void spread_points(std::span<const VertexField> field);
   View view(std::span<const AtlasFace> faces, std::span<const Image8> images) const;
   PictureLosses at(std::uint32_t face, Vec2f was, Vec2f is, float turn, const View& now) const;
 
   const Model& model_;
   std::vector<AtlasFace> faces_;
   std::vector<TexelMeaning> meanings_;
-  double diagonal_;  // of the model
   View before_;
-  std::vector<Point> points_;
+  std::vector<SurfacePoint> points_;
   Sampler sampler_ = clamping_sampler();
 };
 

@@ -21,6 +21,7 @@
 #include "fovea/texture/image_use.h"
 #include "fovea/texture/normal_bake.h"
 #include "fovea/texture/rebake.h"
+#include "fovea/texture/seen_points.h"
 
 namespace fovea {
 
@@ -224,12 +225,17 @@ class Shrinker {
   /// As near as asked where triangles show it; `faces` are all of them, or none if they are not all known.
   std::optional<ImageOutput> encoded(int image, const Image8& picture,
                                      std::span<const AtlasFace> faces) const {
+    const ImageUse& use = uses_[index(image)];
+    const std::vector<std::uint8_t> counted = read_texels(faces, picture.width, picture.height, context_);
+    const std::uint64_t most =
+        prepared_.new_maps.contains(image) ? std::numeric_limits<std::uint64_t>::max() : before(image).bytes;
+    if (const std::optional<FileChoice>& file = wanted(image).file) {
+      EncodedTexture texture = encode_at(picture, file->format, file->quality, content_of(use), counted);
+      if (texture.bytes.size() < most) return ImageOutput{std::move(texture), file->format};
+    }
     ImageOutputOptions output = options_.output;
     output.psnr_db = wanted(image).psnr_db;
-    const bool is_new = prepared_.new_maps.contains(image);
-    return encode_output(picture, uses_[index(image)], before(image).mime_type,
-                         is_new ? std::numeric_limits<std::uint64_t>::max() : before(image).bytes, output,
-                         read_texels(faces, picture.width, picture.height, context_));
+    return encode_output(picture, use, before(image).mime_type, most, output, counted);
   }
 
   void set(int image, ImageOutput output) {
@@ -307,16 +313,16 @@ class Shrinker {
   void resize(int image, std::span<const AtlasFace> faces) {
     try {
       const ImageUse& use = uses_[index(image)];
-      const auto& [width, height, psnr_db, stays, reason] = wanted(image);
+      const WantedImage& size = wanted(image);
       Image8 picture = decoded(image);
       const Image8 old = rebake_ != nullptr && !is_smaller(image) ? picture : Image8();
       if (rebake_ != nullptr) {
         picture = rebaked(image, picture);
-      } else if (!faces.empty() && is_smaller(image)) {
+      } else if (is_smaller(image) && (!size.file || size.file->fill)) {
         fill_between(picture, faces, context_);
       }
       if (is_smaller(image))
-        picture = resized(picture, width, height, use.meaning, use.wrap_u, use.wrap_v, context_);
+        picture = resized(picture, size.width, size.height, use.meaning, use.wrap_u, use.wrap_v, context_);
       finish(image, picture, faces, old);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
@@ -376,10 +382,13 @@ Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, S
   const std::vector<ImageUse> uses = image_uses(prepared.model);
   std::vector<WantedImage> known = limits;
   for (std::size_t i = 0; i < known.size(); ++i) {
-    if (uses[i].is_ambiguous) known[i] = {};
+    if (uses[i].is_ambiguous || prepared.new_maps.contains(static_cast<int>(i))) known[i] = {};
   }
-  ByteBudget budget(prepared.model, prepared.atlases, known, options.output, field, context);
   const auto most = static_cast<double>(*options.max_bytes);
+  const std::vector<double> pixels = options.shown_pixels > 0
+                                         ? std::vector{options.shown_pixels}
+                                         : std::vector(kPictureSizes.begin(), kPictureSizes.end());
+  ByteBudget budget(prepared.model, prepared.atlases, known, options.output, field, pixels, most, context);
   double goal = most;
   std::vector<WantedImage> last;
   for (int round = 0;; ++round) {
@@ -435,8 +444,8 @@ OptionList describe(ShrinkOptions& o) {
       {"max-texture", "Texels along the longer side of a texture, at most; 0 sets no limit.", &o.max_side,
        "texels", 0, 1 << 16},
       {"texture-bytes",
-       "Bytes of all image files together, at most: sizes and qualities are chosen so that least is lost of "
-       "what is seen; texels do not move.",
+       "Bytes of all image files together, at most: sizes and qualities are chosen so that pictures lose "
+       "least; texels do not move.",
        &o.max_bytes, "bytes", 1},
       {"warp",
        "Move texels within textures to where they matter: balanced by what would be lost, where it shows and "

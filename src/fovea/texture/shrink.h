@@ -36,6 +36,7 @@ struct ShrinkOptions {
   std::int64_t max_side = 0;   ///< Texels along the longer side at most; 0 for no limit.
   std::vector<double> scales;  ///< [#images] Of the sides of each at most (texel_density.h); or empty.
   std::optional<std::int64_t> max_bytes;  ///< Of all image files together.
+  double shown_pixels = 0;  ///< How long the model will be in pictures, for `max_bytes`; 0 for 512 to 2048.
   ImageOutputOptions output;
   TexelMoves moves = TexelMoves::balanced;
   WarpOptions warp;

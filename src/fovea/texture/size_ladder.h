@@ -8,11 +8,8 @@
 
 namespace fovea {
 
-/// A way to store an image, what its file takes and what it loses.
+/// A way to store an image: what its file takes and what it loses.
 struct LadderStep {
-  int width = 0, height = 0;
-  double psnr_db = 0;      ///< Of the encoding.
-  bool is_file = false;    ///< The file as it is.
   std::size_t number = 0;  ///< The caller's own.
   double bytes = 0, loss = 0;
 };

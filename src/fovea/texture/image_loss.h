@@ -1,0 +1,58 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fovea/base/context.h"
+#include "fovea/model/field.h"
+#include "fovea/model/image.h"
+#include "fovea/model/model.h"
+#include "fovea/texture/atlas.h"
+#include "fovea/texture/image_use.h"
+#include "fovea/texture/mip_map.h"
+
+// Shared inside Fovea, not installed.
+
+namespace fovea {
+
+/// Where pictures look at an image, and how many texels they see at once.
+class ImageSights {
+ public:
+  /// 8,192 points all over the surface (`spread_points`) of `faces`, in pictures in which the model is so
+  /// many `pixels` long. Without faces pictures show the image as a whole, from edge to edge. O(#F).
+  ImageSights(const Model& model, std::span<const AtlasFace> faces, std::span<const VertexField> field,
+              std::vector<double> pixels);
+
+  struct Sight {
+    Vec2f uv;
+    UvSlopes slopes;  ///< In a picture in which the model is one pixel long.
+    double counts = 1;
+  };
+  const std::vector<Sight>& all() const { return sights_; }
+  const std::vector<double>& pixels() const { return pixels_; }
+
+ private:
+  std::vector<Sight> sights_;
+  std::vector<double> pixels_;
+};
+
+/// What pictures lose when an image is another one, in the same place.
+class ImageLoss {
+ public:
+  /// Keeps a reference to the sights. Parallel.
+  ImageLoss(const ImageSights& sights, const Image8& image, const ImageUse& use, const Context& context);
+
+  /// [#pixels of the sights] The mean squared difference of what is shown, looked up as GPUs do, with mip
+  /// maps: 0 … 1 for each channel. Parallel.
+  std::vector<double> of(const Image8& other, const Context& context) const;
+
+ private:
+  std::vector<Rgba> looks(const Image8& image, const Context& context) const;
+
+  const ImageSights& sights_;
+  TexelMeaning meaning_;
+  Sampler sampler_;
+  std::vector<Rgba> before_;  // [#sights][#pixels]
+};
+
+}  // namespace fovea
