@@ -112,7 +112,8 @@ Shrunk shrunk(const Model& model, double scale, const ImageOutputOptions& output
   return shrink_textures(model, options, field, context);
 }
 
-Model within_bytes(const Model& model, std::uint64_t most, std::int64_t pixels, const ImageOutputOptions& output) {
+Model within_bytes(const Model& model, std::uint64_t most, std::int64_t pixels,
+                   const ImageOutputOptions& output) {
   Context context;
   ShrinkOptions options;
   options.shown_pixels = static_cast<double>(pixels);

@@ -104,5 +104,14 @@ TEST(NeededScales, KeepATexelToThePixel) {
   EXPECT_DOUBLE_EQ(scales[3], 1);
 }
 
+TEST(NeededScales, AreHalvesOfHalves) {
+  std::vector<TexelDensity> densities(1);
+  densities[0].add(256);
+  densities[0].is_used = true;
+  EXPECT_DOUBLE_EQ(needed_scales(densities, 128)[0], 0.5);
+  EXPECT_DOUBLE_EQ(needed_scales(densities, 145)[0], 0.5);  // 0.88 texels to a pixel
+  EXPECT_DOUBLE_EQ(needed_scales(densities, 160)[0], 1);    // 0.8 would be too few
+}
+
 }  // namespace
 }  // namespace fovea

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "fovea/base/random.h"
+#include "fovea/io/image_codec.h"
 #include "fovea/texture/bake.h"
 #include "support/meshes.h"
 #include "support/textured.h"
@@ -30,8 +31,8 @@ class ImageWays : public testing::Test {
   ImageUse use{.is_used = true, .meaning = {TexelMeaning::Kind::color}};
   ImageLoss loss{sights, image, use, {}};
 
-  ImageLimits limits(TextureFormat format, int half_octaves = 4, double most_bytes = 1e9) const {
-    return {use, format, 64, 64, half_octaves, most_bytes};
+  ImageLimits limits(TextureFormat format, int side = 64, double most_bytes = 1e9) const {
+    return {use, format, side, side, most_bytes};
   }
   std::vector<ImageWay> ways(const ImageLimits& limits, std::span<const AtlasFace> shown = {}) const {
     return image_ways(image, limits, shown, loss, {});
@@ -40,12 +41,10 @@ class ImageWays : public testing::Test {
 
 TEST_F(ImageWays, AreWhatTheyWouldBeAsFiles) {
   for (const ImageWay& way : ways(limits(TextureFormat::webp))) {
-    const Image8 small = way.width == 64 ? image
-                                         : resized(image, way.width, way.height, use.meaning, use.wrap_u,
-                                                   use.wrap_v, {});
-    const EncodedTexture file = encode_at(small, way.file->format, way.file->quality, Content::colors);
-    EXPECT_EQ(way.bytes, static_cast<double>(file.bytes.size()));
-    EXPECT_EQ(way.psnr_db, file.psnr_db);
+    const Image8 small = way.width == 64 ? image : resized_for_way(image, way.width, way.height, use, {});
+    const std::vector<std::uint8_t> file = encode_texture(small, way.file->format, way.file->quality);
+    EXPECT_EQ(way.bytes, static_cast<double>(file.size()));
+    EXPECT_EQ(way.losses, loss.of(way.file->quality == 0 ? small : decode_image(file), {}));
   }
 }
 
@@ -56,12 +55,12 @@ TEST_F(ImageWays, AreOfEachSizeWithoutLossToo) {
     EXPECT_EQ(way.file->quality, 0);
     EXPECT_EQ(way.losses[0] == 0, way.width == 64);
   }
-  EXPECT_THAT(widths, testing::ElementsAre(16, 23, 32, 45, 64));
+  EXPECT_THAT(widths, testing::ElementsAre(2, 4, 8, 16, 32, 64));
 }
 
 TEST_F(ImageWays, NoneTakesTooManyBytesButTheSmallestOfAll) {
-  for (const ImageWay& way : ways(limits(TextureFormat::jpeg, 4, 2000))) EXPECT_LT(way.bytes, 2000);
-  EXPECT_THAT(ways(limits(TextureFormat::jpeg, 4, 10)), testing::SizeIs(1));
+  for (const ImageWay& way : ways(limits(TextureFormat::jpeg, 64, 2000))) EXPECT_LT(way.bytes, 2000);
+  EXPECT_THAT(ways(limits(TextureFormat::jpeg, 64, 10)), testing::SizeIs(1));
 }
 
 TEST_F(ImageWays, AreFilledBetweenTrianglesAndAsTheyAre) {
@@ -69,9 +68,11 @@ TEST_F(ImageWays, AreFilledBetweenTrianglesAndAsTheyAre) {
   for (AtlasFace& face : faces)
     for (Vec2d& uv : face.uv) uv.x *= 0.5;
   const auto filled = [](const ImageWay& way) { return way.file->fill; };
-  const std::vector<ImageWay> found = ways(limits(TextureFormat::png, 2), faces);
-  EXPECT_EQ(std::ranges::count_if(found, filled), 2);  // at its own size nothing is filled
-  EXPECT_EQ(found.size(), 5u);
+  const std::vector<ImageWay> found = ways(limits(TextureFormat::png, 40), faces);
+  EXPECT_EQ(std::ranges::count_if(found, filled), 6);  // 2, 4, ..., 32 and 40 texels
+  EXPECT_EQ(found.size(), 12u);
+  // At its own size nothing is filled.
+  EXPECT_EQ(ways(limits(TextureFormat::png), faces).size(), 11u);
 }
 
 TEST_F(ImageWays, FinerOnesAreOfOtherQualities) {
@@ -80,9 +81,8 @@ TEST_F(ImageWays, FinerOnesAreOfOtherQualities) {
                               fine = finer_ways(coarse, 3000, image, asked, {}, loss, {});
   EXPECT_FALSE(fine.empty());
   for (const ImageWay& way : fine) {
-    EXPECT_TRUE(std::ranges::none_of(coarse, [&](const ImageWay& other) {
-      return other.width == way.width && other.file == way.file;
-    }));
+    EXPECT_TRUE(std::ranges::none_of(
+        coarse, [&](const ImageWay& other) { return other.width == way.width && other.file == way.file; }));
   }
 }
 

@@ -190,7 +190,8 @@ std::vector<double> needed_scales(std::span<const TexelDensity> densities, doubl
     } else if (density.pixels() == 0) {
       scales.push_back(kUnseenScale);
     } else {
-      scales.push_back(std::clamp(height / density.quantile(kCoarsePixels), kUnseenScale, 1.0));
+      const double halvings = std::floor(kSpare - std::log2(height / density.quantile(kCoarsePixels)));
+      scales.push_back(std::clamp(std::exp2(-halvings), kUnseenScale, 1.0));
     }
   }
   return scales;

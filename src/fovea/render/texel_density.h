@@ -44,9 +44,13 @@ inline constexpr double kCoarsePixels = 0.1;
 /// The scale of the sides of images that no view sees.
 inline constexpr double kUnseenScale = 1.0 / 32;
 
-/// [#images] How much smaller the sides of images may be, 0 … 1, if pictures are `height` pixels high: all
-/// but kCoarsePixels of the pixels keep one texel to a pixel. 1 for images that no triangle uses: nothing is
-/// known of them.
+/// What an octave of sizes may be short by, in octaves: 0.84 texels to a pixel at least.
+inline constexpr double kSpare = 0.25;
+
+/// [#images] How much smaller the sides of images may be, if pictures are `height` pixels high: all but
+/// kCoarsePixels of the pixels keep one texel to a pixel, nearly (kSpare). 1, 1/2, 1/4, ...: GPUs make the
+/// same smaller copies of an image, so that pictures see nearly the same. 1 for images that no triangle uses:
+/// nothing is known of them.
 std::vector<double> needed_scales(std::span<const TexelDensity> densities, double height);
 
 }  // namespace fovea

@@ -8,24 +8,27 @@
 #include "fovea/base/parallel.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/texture/importance.h"
-#include "fovea/texture/seen_points.h"
 #include "fovea/texture/size_ladder.h"
 
 namespace fovea {
 
 namespace {
 
-/// Of the sides that an image has: the least it may come to, as halves of octaves.
-constexpr int kMostHalfOctaves = 10;
 /// How often sums of losses become the weights that find the next.
 constexpr int kRounds = 6;
 /// A hundredth of a step of a byte, squared: no less counts.
 constexpr double kLeastLoss = 1e-4 / (255.0 * 255.0);
 
-int half_octaves(const WantedImage& limit, const ImageChange::State& before) {
-  const double part = static_cast<double>(std::max(limit.width, limit.height)) /
-                      static_cast<double>(std::max(before.width, before.height));
-  return std::max(0, kMostHalfOctaves + static_cast<int>(std::floor(2 * std::log2(part) + 1e-9)));
+/// How much of a squared difference lit pictures tell. With half as much for all but colours, as
+/// `loss_weight` has it, colours took too many bytes: DamagedHelmet at a quarter of its sides was 0.4 dB
+/// worse with light.
+double lit_weight(const TexelMeaning& meaning) {
+  switch (meaning.kind) {
+    case TexelMeaning::Kind::color:
+    case TexelMeaning::Kind::normal: return 1;
+    case TexelMeaning::Kind::data: break;
+  }
+  return 0.5;
 }
 
 }  // namespace
@@ -72,20 +75,15 @@ void ByteBudget::measure(Candidate& candidate) const {
   const auto bytes = static_cast<double>(file.bytes.size());
   try {
     const Image8 image = without_idle_alpha(decode_image(file.bytes), use);
-    const ImageChange::State before = state_of(file);
-    candidate.limits = {use,
-                        output_format(image, before.mime_type, options_),
-                        limit.width,
-                        limit.height,
-                        half_octaves(limit, before),
-                        std::min(bytes, most_bytes_ + 1)};
+    candidate.limits = {use, output_format(image, state_of(file).mime_type, options_), limit.width,
+                        limit.height, std::min(bytes, most_bytes_ + 1)};
     const std::vector<AtlasFace> faces = known_faces(candidate);
     const ImageSights seen = sights(candidate);
     candidate.ways =
         image_ways(image, candidate.limits, faces, ImageLoss(seen, image, use, context_), context_);
     if (limit.stays)
-      candidate.ways.push_back({limit.width, limit.height, std::nullopt, limit.psnr_db, bytes,
-                                std::vector<double>(pixels_.size())});
+      candidate.ways.push_back(
+          {limit.width, limit.height, std::nullopt, bytes, std::vector<double>(pixels_.size())});
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::cancelled) throw;
     candidate.ways.clear();
@@ -111,7 +109,7 @@ void ByteBudget::add(Sums& sums, const Candidate& candidate, const ImageWay& way
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     const double loss = candidate.area * way.losses[p];
     if (meaning.kind == TexelMeaning::Kind::color) sums[2 * p] += loss;
-    sums[2 * p + 1] += loss * loss_weight(meaning);
+    sums[2 * p + 1] += loss * lit_weight(meaning);
   }
 }
 
@@ -136,8 +134,7 @@ ByteBudget::Numbers ByteBudget::numbers_within(double bytes) const {
         Sums lost(sums.size());
         add(lost, candidate, candidate.ways[w]);
         double loss = 0;
-        for (std::size_t c = 0; c < sums.size(); ++c)
-          loss += lost[c] / std::max(sums[c], area * kLeastLoss);
+        for (std::size_t c = 0; c < sums.size(); ++c) loss += lost[c] / std::max(sums[c], area * kLeastLoss);
         own.push_back({w, candidate.ways[w].bytes, loss});
       }
       ladders.push_back(lower_hull(own));
@@ -162,10 +159,9 @@ std::vector<WantedImage> ByteBudget::wanted(const Numbers& numbers) const {
     const ImageWay& way = candidates_[c].ways[numbers[c]];
     WantedImage& image = images[candidates_[c].image];
     if (!way.file) continue;
-    const bool is_limit = !image.stays && way.width == image.width && way.height == image.height &&
-                          way.psnr_db >= image.psnr_db;
-    image = {way.width, way.height,   image.psnr_db,
-             false,     is_limit ? image.reason : SizeReason::bytes, way.file};
+    const bool is_limit = way.width == image.width && way.height == image.height;
+    const SizeReason reason = is_limit && image.reason != SizeReason::none ? image.reason : SizeReason::bytes;
+    image = {way.width, way.height, image.psnr_db, false, reason, way.file};
   }
   return images;
 }
@@ -178,7 +174,8 @@ std::vector<WantedImage> ByteBudget::choose(double bytes) {
   parallel_for_or_throw(context_, candidates_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       Candidate& candidate = candidates_[c];
-      if (!std::exchange(candidate.is_refined, true)) refine(candidate, candidate.ways[first[c]].bytes + left);
+      if (!std::exchange(candidate.is_refined, true))
+        refine(candidate, candidate.ways[first[c]].bytes + left);
     }
   });
   return wanted(numbers_within(room));

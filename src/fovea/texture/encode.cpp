@@ -21,15 +21,6 @@ constexpr int kSquare = 16, kEven = 8;
 constexpr double kBusyDb = 2;
 constexpr double kNoLoss = std::numeric_limits<double>::infinity();
 
-std::vector<std::uint8_t> encoded(const Image8& image, TextureFormat format, int quality) {
-  switch (format) {
-    case TextureFormat::png: return encode_png(image);
-    case TextureFormat::jpeg: return encode_jpeg(image, quality);
-    case TextureFormat::webp: return encode_webp(image, quality == 0 ? 101 : quality);
-  }
-  throw Error(ErrorKind::internal, "an unknown format of textures");
-}
-
 /// An image and which of its texels count: none are named if all do.
 struct Counted {
   const Image8& image;
@@ -227,10 +218,19 @@ double encoding_psnr(const Image8& a, const Image8& b, Content content,
   return busy.texels > 0 ? std::min(whole, psnr(busy.mean()) + kBusyDb) : whole;
 }
 
+std::vector<std::uint8_t> encode_texture(const Image8& image, TextureFormat format, int quality) {
+  switch (format) {
+    case TextureFormat::png: return encode_png(image);
+    case TextureFormat::jpeg: return encode_jpeg(image, quality);
+    case TextureFormat::webp: return encode_webp(image, quality == 0 ? 101 : quality);
+  }
+  throw Error(ErrorKind::internal, "an unknown format of textures");
+}
+
 EncodedTexture encode_at(const Image8& image, TextureFormat format, int quality, Content content,
                          std::span<const std::uint8_t> counted) {
-  if (quality == 0) return {encoded(image, format, 0), 0, kNoLoss};
-  EncodedTexture result{encoded(image, format, quality), quality, 0};
+  if (quality == 0) return {encode_texture(image, format, 0), 0, kNoLoss};
+  EncodedTexture result{encode_texture(image, format, quality), quality, 0};
   const Image8 decoded = with_channels(decode_image(result.bytes), image.channels);
   result.psnr_db = encoding_psnr(image, decoded, content, counted);
   return result;
@@ -253,7 +253,8 @@ EncodedTexture encode_to_psnr(const Image8& image, TextureFormat format, double 
   if (format == TextureFormat::jpeg) return result;
   if (result.psnr_db < least_psnr_db) return without_loss();
   // Drawings and even colours are often smaller without loss.
-  if (encoded(part.image, format, 0).size() >= encoded(part.image, format, quality).size()) return result;
+  if (encode_texture(part.image, format, 0).size() >= encode_texture(part.image, format, quality).size())
+    return result;
   EncodedTexture exact = without_loss();
   return exact.bytes.size() < result.bytes.size() ? exact : result;
 }

@@ -36,7 +36,9 @@ enum class Content {
 double encoding_psnr(const Image8& a, const Image8& b, Content content,
                      std::span<const std::uint8_t> counted = {});
 
-/// At a quality of 1 … 100, or 0 without loss, which JPEG does not have; its error as `encoding_psnr` counts.
+/// A file of a quality of 1 … 100, or 0 without loss, which JPEG does not have.
+std::vector<std::uint8_t> encode_texture(const Image8& image, TextureFormat format, int quality);
+/// And its error as `encoding_psnr` counts.
 EncodedTexture encode_at(const Image8& image, TextureFormat format, int quality, Content content,
                          std::span<const std::uint8_t> counted = {});
 

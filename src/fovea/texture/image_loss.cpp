@@ -43,15 +43,14 @@ std::vector<Rgba> ImageLoss::looks(const Image8& image, const Context& context) 
   const MipMap map = mip_map(image, meaning_);
   const std::size_t count = sights_.pixels().size();
   std::vector<Rgba> result(sights_.all().size() * count);
-  parallel_for_or_throw(
-      context, sights_.all().size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const ImageSights::Sight& sight = sights_.all()[i];
-          for (std::size_t p = 0; p < count; ++p)
-            result[i * count + p] =
-                shown(map.sample(sight.uv, scaled(sight.slopes, 1 / sights_.pixels()[p]), sampler_), meaning_);
-        }
-      });
+  parallel_for_or_throw(context, sights_.all().size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const ImageSights::Sight& sight = sights_.all()[i];
+      for (std::size_t p = 0; p < count; ++p)
+        result[i * count + p] =
+            shown(map.sample(sight.uv, scaled(sight.slopes, 1 / sights_.pixels()[p]), sampler_), meaning_);
+    }
+  });
   return result;
 }
 

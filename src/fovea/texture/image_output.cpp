@@ -73,7 +73,8 @@ OptionList describe(ImageOutputOptions& o) {
       {"texture-format", "File format of textures that change; JPEG where alpha does not count.",
        choice(o.format, {"keep", "png", "jpeg", "webp"}), ""},
       {"texture-psnr",
-       "How near a texture that is encoded anew has to be to what was encoded, where --texture-bytes does not "
+       "How near a texture that is encoded anew has to be to what was encoded, where --texture-bytes does "
+       "not "
        "choose; from 99 on without loss.",
        &o.psnr_db, "dB", 20, 100},
   };

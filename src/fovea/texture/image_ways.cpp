@@ -16,109 +16,153 @@ namespace fovea {
 
 namespace {
 
+/// No image gets smaller than this many halves of what it was.
+constexpr int kMostHalvings = 5;
+/// A hundredth of a step of a byte, squared: no less counts.
+constexpr double kLeastLoss = 1e-4 / (255.0 * 255.0);
 constexpr int kLeastQuality = 15, kMostQuality = 98;
 
 /// Of how many sizes, formats and fillings more qualities are tried.
 constexpr std::size_t kFiner = 3;
+/// WebP has half the resolution for colours, so JPEG may be better: from this quality on.
+constexpr int kLeastJpegQuality = 78;
+/// A higher quality gains nothing where a file loses hardly more than the size alone does.
+constexpr double kNearlyAll = 1.05;
+/// Texels up to which images are both filled and as they are; up to which WebP is tried without loss, which
+/// takes long; and up to which many qualities are.
+constexpr std::int64_t kSmall = 1 << 16, kMiddle = 1 << 18, kLarge = 1 << 20;
 
 /// From a quality that is tried to the next: small images are encoded in no time, and even colours may be met
 /// better by less.
-int quality_step(int width, int height) {
-  const std::int64_t texels = std::int64_t{width} * height;
-  if (texels <= (1 << 16)) return 3;
-  return texels <= (1 << 18) ? 6 : 10;
+int quality_step(std::int64_t texels) {
+  if (texels <= kSmall) return 3;
+  if (texels <= kMiddle) return 6;
+  return texels <= kLarge ? 12 : 20;
 }
 
-/// An image of one size, and what of it triangles show.
-struct Picture {
-  Image8 image;
-  std::vector<std::uint8_t> counted;
-};
+double sum_of_losses(const ImageWay& way) {
+  return std::accumulate(way.losses.begin(), way.losses.end(), 0.0);
+}
+
+Image8 resized(const Image8& image, int width, int height, const ImageUse& use, const Context& context) {
+  return resized(image, width, height, use.meaning, use.wrap_u, use.wrap_v, context);
+}
+
+bool is_by_quarter(const Image8& image, int width, int height) {
+  return width * 8 <= image.width && height * 8 <= image.height;
+}
+
+Image8 quartered(const Image8& image, const ImageUse& use, const Context& context) {
+  return resized(image, image.width / 4, image.height / 4, use, context);
+}
 
 class Ways {
  public:
   Ways(const Image8& image, const ImageLimits& limits, std::span<const AtlasFace> faces,
        const ImageLoss& loss, const Context& context)
-      : image_(image), limits_(limits), faces_(faces), loss_(loss), context_(context) {
-    if (!faces.empty()) {
-      filled_ = image;
-      fill_between(filled_, faces, context);
-      is_filled_ = filled_.pixels != image.pixels;
-    }
+      : image_(image), limits_(limits), loss_(loss), context_(context) {
+    if (faces.empty()) return;
+    filled_ = image;
+    fill_between(filled_, faces, context);
+    is_filled_ = filled_.pixels != image.pixels;
   }
 
   std::vector<ImageWay> take() { return std::move(ways_); }
-  bool empty() const { return ways_.empty(); }
+
   /// Whether one was added.
   bool add_size(int width, int height) {
     const std::size_t before = ways_.size();
+    const bool is_small = std::int64_t{width} * height <= kSmall;
+    if (is_small) last_small_ = ways_.size();
     for (const bool fill : {true, false}) {
       if (fill && !may_fill(width)) continue;
-      const Picture picture = sized(width, height, fill);
-      add_qualities(picture, limits_.format, fill);
-      if (limits_.format == TextureFormat::webp && !image_.has_alpha())
-        add_qualities(picture, TextureFormat::jpeg, fill);
+      if (!is_small && may_fill(width) && fill != prefers_filled()) continue;
+      add_kind(width, height, fill);
     }
     return ways_.size() > before;
   }
 
   void add_beside(const ImageWay& way) {
     const auto [format, quality, fill] = *way.file;
-    const Picture picture = sized(way.width, way.height, fill);
-    const int step = quality_step(way.width, way.height), finer = (step + 3) / 4;
+    const Image8 picture = sized(way.width, way.height, fill);
+    const int step = quality_step(texels(picture)),
+              finer = texels(picture) > kLarge ? step / 2 : (step + 3) / 4;
     for (int q = quality - step + finer; q < quality + step; q += finer) {
       if (q > 0 && q <= 100 && q != quality) add(picture, {format, q, fill});
     }
   }
 
  private:
+  static std::int64_t texels(const Image8& image) { return std::int64_t{image.width} * image.height; }
+
   bool may_fill(int width) const { return is_filled_ && width < image_.width; }
 
-  Picture sized(int width, int height, bool fill) const {
-    const Image8& from = fill ? filled_ : image_;
-    const ImageUse& use = limits_.use;
-    const bool same = width == from.width && height == from.height;
-    return {same ? from : resized(from, width, height, use.meaning, use.wrap_u, use.wrap_v, context_),
-            read_texels(faces_, width, height, context_)};
+  /// By the largest of the small images: whether files lose and take less if it is filled.
+  bool prefers_filled() const {
+    std::map<std::pair<TextureFormat, int>, double> costs;
+    double sum = 0;
+    for (const ImageWay& way : std::span(ways_).subspan(last_small_)) {
+      const auto [format, quality, fill] = *way.file;
+      const double cost = std::log(way.bytes) + std::log(sum_of_losses(way) + kLeastLoss);
+      if (fill) {
+        costs[{format, quality}] = cost;
+      } else if (const auto filled = costs.find({format, quality}); filled != costs.end()) {
+        sum += filled->second - cost;
+      }
+    }
+    return sum <= 0;
+  }
+
+  Image8 sized(int width, int height, bool fill) {
+    const Image8& whole = fill ? filled_ : image_;
+    if (width == whole.width && height == whole.height) return whole;
+    if (!is_by_quarter(whole, width, height)) return resized(whole, width, height, limits_.use, context_);
+    Image8& quarter = fill ? filled_quarter_ : quarter_;
+    if (quarter.width == 0) quarter = quartered(whole, limits_.use, context_);
+    return resized(quarter, width, height, limits_.use, context_);
+  }
+
+  void add_kind(int width, int height, bool fill) {
+    const Image8 picture = sized(width, height, fill);
+    if (limits_.format == TextureFormat::png) {
+      add(picture, {TextureFormat::png, 0, fill});
+      return;
+    }
+    const std::vector<double> losses = loss_.of(picture, context_);
+    const double least = std::accumulate(losses.begin(), losses.end(), 0.0);
+    add_qualities(picture, {limits_.format, kLeastQuality, fill}, least);
+    if (limits_.format != TextureFormat::webp) return;
+    if (texels(picture) <= kMiddle) add(picture, {TextureFormat::webp, 0, fill});
+    if (!image_.has_alpha()) add_qualities(picture, {TextureFormat::jpeg, kLeastJpegQuality, fill}, least);
+  }
+
+  /// From that of `file` on.
+  void add_qualities(const Image8& picture, FileChoice file, double least_loss) {
+    for (; file.quality <= kMostQuality; file.quality += quality_step(texels(picture))) {
+      if (!add(picture, file) || sum_of_losses(ways_.back()) <= kNearlyAll * least_loss) return;
+    }
   }
 
   /// False if it takes too many bytes.
-  bool add(const Picture& picture, const FileChoice& file) {
-    const Image8& image = picture.image;
-    const EncodedTexture texture =
-        encode_at(image, file.format, file.quality, content_of(limits_.use), picture.counted);
-    const auto bytes = static_cast<double>(texture.bytes.size());
+  bool add(const Image8& picture, const FileChoice& file) {
+    const std::vector<std::uint8_t> encoded = encode_texture(picture, file.format, file.quality);
+    const auto bytes = static_cast<double>(encoded.size());
     if (bytes >= limits_.most_bytes && !ways_.empty()) return false;
-    ways_.push_back({image.width, image.height, file, texture.psnr_db, bytes,
-                     loss_.of(file.quality == 0 ? image : decode_image(texture.bytes), context_)});
+    ways_.push_back({picture.width, picture.height, file, bytes,
+                     loss_.of(file.quality == 0 ? picture : decode_image(encoded), context_)});
     return true;
-  }
-
-  void add_qualities(const Picture& picture, TextureFormat format, bool fill) {
-    if (format == TextureFormat::png) {
-      add(picture, {format, 0, fill});
-      return;
-    }
-    const int step = quality_step(picture.image.width, picture.image.height);
-    for (int quality = kLeastQuality; quality <= kMostQuality; quality += step) {
-      if (!add(picture, {format, quality, fill})) return;
-    }
-    if (format == TextureFormat::webp) add(picture, {format, 0, fill});
   }
 
   const Image8& image_;
   const ImageLimits& limits_;
-  std::span<const AtlasFace> faces_;
   const ImageLoss& loss_;
   const Context& context_;
   Image8 filled_;
-  bool is_filled_ = false;  // differs from the image
+  Image8 quarter_, filled_quarter_;  // a quarter of the sides; empty until needed
+  bool is_filled_ = false;           // differs from the image
+  std::size_t last_small_ = 0;       // the first way of the largest small image
   std::vector<ImageWay> ways_;
 };
-
-double sum_of_losses(const ImageWay& way) {
-  return std::accumulate(way.losses.begin(), way.losses.end(), 0.0);
-}
 
 /// The best of each size, format and filling that takes no more than so many bytes: the best few of them.
 std::vector<const ImageWay*> best_kinds(std::span<const ImageWay> ways, double bytes) {
@@ -138,16 +182,23 @@ std::vector<const ImageWay*> best_kinds(std::span<const ImageWay> ways, double b
 
 }  // namespace
 
+Image8 resized_for_way(const Image8& image, int width, int height, const ImageUse& use,
+                       const Context& context) {
+  return is_by_quarter(image, width, height)
+             ? resized(quartered(image, use, context), width, height, use, context)
+             : resized(image, width, height, use, context);
+}
+
 std::vector<ImageWay> image_ways(const Image8& image, const ImageLimits& limits,
                                  std::span<const AtlasFace> faces, const ImageLoss& loss,
                                  const Context& context) {
   Ways ways(image, limits, faces, loss, context);
-  for (int k = limits.half_octaves; k >= 0; --k) {
-    const auto side = [&](int whole) {
-      return std::max(1, static_cast<int>(std::lround(whole * std::exp2(-0.5 * k))));
-    };
-    if (!ways.add_size(side(limits.width), side(limits.height))) break;
+  for (int halvings = kMostHalvings; halvings >= 0; --halvings) {
+    const int width = std::max(1, image.width >> halvings), height = std::max(1, image.height >> halvings);
+    if (width >= limits.width || height >= limits.height) break;
+    if (!ways.add_size(width, height)) return ways.take();
   }
+  ways.add_size(limits.width, limits.height);
   return ways.take();
 }
 

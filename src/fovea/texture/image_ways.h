@@ -19,7 +19,6 @@ namespace fovea {
 struct ImageWay {
   int width = 0, height = 0;
   std::optional<FileChoice> file;  ///< None for the file as it is.
-  double psnr_db = 0;              ///< Of the encoding.
   double bytes = 0;
   std::vector<double> losses;  ///< What pictures lose by it (`ImageLoss`).
 };
@@ -28,18 +27,25 @@ struct ImageWay {
 struct ImageLimits {
   ImageUse use;
   TextureFormat format = TextureFormat::png;
-  int width = 0, height = 0;  ///< At most,
-  int half_octaves = 0;       ///< and each size 1/√2 of the one before, so many times.
+  int width = 0, height = 0;  ///< At most.
   double most_bytes = 0;      ///< No file takes as much.
 };
 
-/// Encodes an image of each size, and at several qualities, to see what that takes and what pictures lose:
-/// as it is, and from where it is filled between the triangles that show it, `faces` (all of them, or none
-/// if not all are known). WebP without alpha as JPEG too. There is always one at least, the smallest image
-/// of the lowest quality, though it may take more bytes than it should.
+/// `resized`, as the images of ways are: by way of a quarter of the sides where an eighth or less is left,
+/// which saves most of the time and loses nothing that is seen.
+Image8 resized_for_way(const Image8& image, int width, int height, const ImageUse& use,
+                       const Context& context);
+
+/// Encodes an image at its limit and at the halves of its own size down to 1/32, which pictures see nearly as
+/// they see the image itself, as GPUs make the same copies of it (at 1/√2 pictures lost 10 dB more of
+/// BoomBox's colours than at 1/2), at several qualities, to see what that takes and what pictures lose:
+/// as it is, and filled between the triangles that show it, `faces` (all of them, or none if not all are
+/// known); large ones only in that of the two ways that did better with a small one. WebP without loss, too,
+/// and if it has no alpha as JPEG. There is always one way at least, the smallest image of the lowest
+/// quality, though it may take more bytes than it should.
 ///
 /// Small sizes first, and none larger than the first of which all files take too much: the time goes with
-/// `most_bytes`. All in memory at once. Throws Error(cancelled).
+/// `most_bytes`. Throws Error(cancelled).
 std::vector<ImageWay> image_ways(const Image8& image, const ImageLimits& limits,
                                  std::span<const AtlasFace> faces, const ImageLoss& loss,
                                  const Context& context);

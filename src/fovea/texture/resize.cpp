@@ -111,11 +111,16 @@ class Mixing {
   std::array<float, 256> stored_{}, plain_{};
 };
 
-void add_up(std::span<const Filter::Tap> taps, const float* row, int channels, float* out) {
+/// A decoded texel; channels that an image does not have are 0.
+using Decoded = std::array<float, 4>;
+
+Decoded added_up(std::span<const Filter::Tap> taps, const Decoded* row) {
+  Decoded sum{};
   for (const Filter::Tap& tap : taps) {
-    const float* texel = row + static_cast<std::ptrdiff_t>(tap.texel) * channels;
-    for (int k = 0; k < channels; ++k) out[k] += tap.weight * texel[k];
+    const Decoded& texel = row[tap.texel];
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += tap.weight * texel[k];
   }
+  return sum;
 }
 
 double coverage(const Image8& image, int limit) {
@@ -171,15 +176,16 @@ Image8 resized(const Image8& image, int width, int height, const TexelMeaning& m
   const Filter across(image.width, width, wrap_u);
   parallel_for(context, static_cast<std::size_t>(image.height), kGrain,
                [&](std::size_t begin, std::size_t end) {
-                 std::vector<float> decoded(static_cast<std::size_t>(image.width) *
-                                            static_cast<std::size_t>(channels));
+                 std::vector<Decoded> decoded(static_cast<std::size_t>(image.width));
                  for (std::size_t y = begin; y < end; ++y) {
                    const std::uint8_t* texel = image.at(0, static_cast<int>(y));
-                   for (std::size_t i = 0; i < decoded.size(); i += static_cast<std::size_t>(channels))
-                     mixing.decode(texel + i, decoded.data() + i);
+                   for (Decoded& to : decoded) {
+                     mixing.decode(texel, to.data());
+                     texel += channels;
+                   }
                    float* out = rows.data() + y * narrow;
                    for (int x = 0; x < width; ++x, out += channels)
-                     add_up(across.taps(x), decoded.data(), channels, out);
+                     std::copy_n(added_up(across.taps(x), decoded.data()).begin(), channels, out);
                  }
                });
 

@@ -123,9 +123,8 @@ PictureLosses SeenLoss::at(std::uint32_t face, Vec2f was, Vec2f is, float turn, 
       const TexelMeaning& meaning = meanings_[k];
       Rgba before = before_.images[k].sample(was, slopes_before, sampler_);
       if (meaning.kind == TexelMeaning::Kind::normal) before = turned(before, turn, false);
-      const double loss =
-          squared_difference(shown(before, meaning),
-                             shown(now.images[k].sample(is, slopes_now, sampler_), meaning));
+      const double loss = squared_difference(shown(before, meaning),
+                                             shown(now.images[k].sample(is, slopes_now, sampler_), meaning));
       result.all[p] += loss * loss_weight(meaning);
       if (meaning.kind != TexelMeaning::Kind::color) continue;
       result.color[p] += loss;

@@ -19,6 +19,7 @@
 #include "fovea/texture/bake.h"
 #include "fovea/texture/byte_budget.h"
 #include "fovea/texture/image_use.h"
+#include "fovea/texture/image_ways.h"
 #include "fovea/texture/normal_bake.h"
 #include "fovea/texture/rebake.h"
 #include "fovea/texture/seen_points.h"
@@ -322,7 +323,9 @@ class Shrinker {
         fill_between(picture, faces, context_);
       }
       if (is_smaller(image))
-        picture = resized(picture, size.width, size.height, use.meaning, use.wrap_u, use.wrap_v, context_);
+        picture = size.file ? resized_for_way(picture, size.width, size.height, use, context_)
+                            : resized(picture, size.width, size.height, use.meaning, use.wrap_u, use.wrap_v,
+                                      context_);
       finish(image, picture, faces, old);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
@@ -385,9 +388,9 @@ Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, S
     if (uses[i].is_ambiguous || prepared.new_maps.contains(static_cast<int>(i))) known[i] = {};
   }
   const auto most = static_cast<double>(*options.max_bytes);
-  const std::vector<double> pixels = options.shown_pixels > 0
-                                         ? std::vector{options.shown_pixels}
-                                         : std::vector(kPictureSizes.begin(), kPictureSizes.end());
+  std::vector<double> pixels(kPictureSizes.begin(), kPictureSizes.end());
+  // As seen aslant, and straight on.
+  if (options.shown_pixels > 0) pixels = {0.75 * options.shown_pixels, 1.5 * options.shown_pixels};
   ByteBudget budget(prepared.model, prepared.atlases, known, options.output, field, pixels, most, context);
   double goal = most;
   std::vector<WantedImage> last;
