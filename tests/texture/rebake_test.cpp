@@ -131,6 +131,22 @@ TEST(Rebake, NormalsTakeTheOldMapAlong) {
   EXPECT_NEAR((half.at(16, 3)[1] - 127.5) / (half.at(16, 3)[2] - 127.5), slope / 2, 0.02);
 }
 
+TEST(Rebake, WhatIsBakedSharesTheBytes) {
+  // A new normal map, which takes what detail it has, and a picture.
+  const Squares s = squares(1);
+  ShrinkOptions options = rebake_of(s.original, true);
+  const Shrunk all = shrink(s.simplified, options);
+  options.max_bytes = static_cast<std::int64_t>(all.bytes) / 4;
+  const Shrunk found = shrink(s.simplified, options);
+  EXPECT_LE(found.bytes, all.bytes / 4);
+  EXPECT_GT(found.bytes, all.bytes / 12);
+  ASSERT_EQ(found.images.size(), 2u);
+  EXPECT_EQ(found.images[1].before.bytes, 0u);
+  EXPECT_GT(found.images[1].after.bytes, 0u);
+  EXPECT_GT(found.atlases.at(0).rebaked_texels, 0.5);
+  EXPECT_EQ(found.images[0].after.mime_type, "image/png");
+}
+
 TEST(Rebake, MovesAndBakesAtOnce) {
   const Squares s = squares(1);
   ShrinkOptions options = rebake_of(s.original);

@@ -33,11 +33,12 @@ double lit_weight(const TexelMeaning& meaning) {
 
 }  // namespace
 
-ByteBudget::ByteBudget(const Model& model, std::span<const Atlas> atlases,
-                       std::span<const WantedImage> limits, const ImageOutputOptions& options,
-                       std::span<const VertexField> field, std::vector<double> pixels, double bytes,
-                       Context& context)
+ByteBudget::ByteBudget(const Model& model, std::span<const ImageChange::State> files,
+                       std::span<const Atlas> atlases, std::span<const WantedImage> limits,
+                       const ImageOutputOptions& options, std::span<const VertexField> field,
+                       std::vector<double> pixels, double bytes, Context& context)
     : model_(model),
+      files_(files),
       limits_(limits.begin(), limits.end()),
       field_(field),
       pixels_(std::move(pixels)),
@@ -50,8 +51,8 @@ ByteBudget::ByteBudget(const Model& model, std::span<const Atlas> atlases,
     context.advance_or_throw("sizes", static_cast<double>(a) / static_cast<double>(atlases.size()));
     std::vector<Candidate> found;
     for (const int image : atlases[a].images) {
-      if (limits_[static_cast<std::size_t>(image)].width > 0)
-        found.push_back({static_cast<std::size_t>(image), &atlases[a], seen_area(model, atlases[a], field)});
+      const auto i = static_cast<std::size_t>(image);
+      if (!uses_[i].is_ambiguous) found.push_back({i, &atlases[a], seen_area(model, atlases[a], field)});
     }
     parallel_for_or_throw(context, found.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) measure(found[i]);
@@ -69,14 +70,14 @@ ImageSights ByteBudget::sights(const Candidate& candidate) const {
 }
 
 void ByteBudget::measure(Candidate& candidate) const {
-  const EncodedImage& file = model_.images[candidate.image];
+  const ImageChange::State& file = files_[candidate.image];
   const WantedImage& limit = limits_[candidate.image];
   const ImageUse& use = uses_[candidate.image];
-  const auto bytes = static_cast<double>(file.bytes.size());
+  const auto bytes = static_cast<double>(file.bytes);
   try {
-    const Image8 image = without_idle_alpha(decode_image(file.bytes), use);
-    candidate.limits = {use, output_format(image, state_of(file).mime_type, options_), limit.width,
-                        limit.height, std::min(bytes, most_bytes_ + 1)};
+    const Image8 image = without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use);
+    candidate.limits = {use, output_format(image, file.mime_type, options_), limit.width, limit.height,
+                        std::min(bytes, most_bytes_ + 1)};
     const std::vector<AtlasFace> faces = known_faces(candidate);
     const ImageSights seen = sights(candidate);
     candidate.ways =

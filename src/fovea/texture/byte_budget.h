@@ -28,12 +28,13 @@ namespace fovea {
 /// chosen, and chosen again.
 class ByteBudget {
  public:
-  /// Images that `limits` [#images] have no size for take what they take. `pixels` as for ImageSights.
-  /// Refers to the model and the atlases. Nothing that takes more than `bytes` by itself is looked at. Throws
-  /// Error(cancelled).
-  ByteBudget(const Model& model, std::span<const Atlas> atlases, std::span<const WantedImage> limits,
-             const ImageOutputOptions& options, std::span<const VertexField> field,
-             std::vector<double> pixels, double bytes, Context& context);
+  /// Images are those of the model; none may take as much as its file did before, in `files` [#images], whose
+  /// formats stay. Those that materials read in different ways take what they take. `pixels` as for
+  /// ImageSights. Refers to the model, the files and the atlases. Nothing that takes more than `bytes` by
+  /// itself is looked at. Throws Error(cancelled).
+  ByteBudget(const Model& model, std::span<const ImageChange::State> files, std::span<const Atlas> atlases,
+             std::span<const WantedImage> limits, const ImageOutputOptions& options,
+             std::span<const VertexField> field, std::vector<double> pixels, double bytes, Context& context);
 
   /// [#images] Of those whose files fit what loses least; the fewest bytes of all if none do.
   std::vector<WantedImage> choose(double bytes);
@@ -62,6 +63,7 @@ class ByteBudget {
   std::vector<WantedImage> wanted(const Numbers& numbers) const;
 
   const Model& model_;
+  std::span<const ImageChange::State> files_;
   std::vector<WantedImage> limits_;
   std::span<const VertexField> field_;
   std::vector<double> pixels_;

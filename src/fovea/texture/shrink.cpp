@@ -35,11 +35,6 @@ constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 /// smaller copies of a texture, which a warp only mixes.
 constexpr int kLeastReduction = 4;
 
-/// How often images that take no more than they may are sought, and by how much more than they are over they
-/// get less.
-constexpr int kMostRounds = 8;
-constexpr double kHaste = 0.99;
-
 /// How an image should be but for what all may take together.
 WantedImage limit_of(const ImageChange::State& image, double seen_scale, const ShrinkOptions& options) {
   double scale = options.scale;
@@ -57,14 +52,6 @@ WantedImage limit_of(const ImageChange::State& image, double seen_scale, const S
   return wanted;
 }
 
-std::vector<WantedImage> limits_of(const Model& model, const ShrinkOptions& options) {
-  std::vector<WantedImage> limits;
-  for (std::size_t i = 0; i < model.images.size(); ++i)
-    limits.push_back(
-        limit_of(state_of(model.images[i]), i < options.scales.size() ? options.scales[i] : 1.0, options));
-  return limits;
-}
-
 WarpAim aim_of(TexelMoves moves) {
   if (moves == TexelMoves::saliency) return WarpAim::saliency;
   return moves == TexelMoves::frequency ? WarpAim::frequency : WarpAim::balanced;
@@ -73,13 +60,14 @@ WarpAim aim_of(TexelMoves moves) {
 /// A model before its images change.
 struct Prepared {
   Model model;
+  std::vector<ImageChange::State> files;  // [#images] that nothing may take more than
   std::vector<Atlas> atlases;
   std::vector<Atlas> originals;  // of the model that it was simplified from, if images are baked anew
   std::set<int> new_maps;        // images that are to hold normals which no image held
 };
 
 Prepared prepare(const Model& model, const RebakeOptions& options) {
-  Prepared result{model, {}, {}, {}};
+  Prepared result{model, {}, {}, {}, {}};
   if (options.original != nullptr) {
     result.originals = find_atlases(*options.original);
     for (const Atlas& atlas : result.originals)
@@ -87,7 +75,18 @@ Prepared prepare(const Model& model, const RebakeOptions& options) {
     if (options.normals) result.new_maps = add_normal_maps(result.model, find_atlases(result.model));
   }
   result.atlases = find_atlases(result.model);
+  for (const EncodedImage& image : result.model.images) result.files.push_back(state_of(image));
+  for (const int image : result.new_maps)
+    result.files[static_cast<std::size_t>(image)].bytes = std::numeric_limits<std::uint64_t>::max();
   return result;
+}
+
+std::vector<WantedImage> limits_of(const Prepared& prepared, const ShrinkOptions& options) {
+  std::vector<WantedImage> limits;
+  for (std::size_t i = 0; i < prepared.files.size(); ++i)
+    limits.push_back(
+        limit_of(prepared.files[i], i < options.scales.size() ? options.scales[i] : 1.0, options));
+  return limits;
 }
 
 /// Makes images smaller, one atlas after the other; the model changes as it goes.
@@ -103,9 +102,9 @@ class Shrinker {
         context_(context),
         uses_(image_uses(prepared.model)) {
     result_.model = prepared.model;
-    for (const EncodedImage& image : prepared.model.images) {
+    for (const ImageChange::State& file : prepared.files) {
       ImageChange& change = result_.images.emplace_back();
-      change.before = change.after = state_of(image);
+      change.before = change.after = file;
     }
   }
 
@@ -228,8 +227,7 @@ class Shrinker {
                                      std::span<const AtlasFace> faces) const {
     const ImageUse& use = uses_[index(image)];
     const std::vector<std::uint8_t> counted = read_texels(faces, picture.width, picture.height, context_);
-    const std::uint64_t most =
-        prepared_.new_maps.contains(image) ? std::numeric_limits<std::uint64_t>::max() : before(image).bytes;
+    const std::uint64_t most = before(image).bytes;
     if (const std::optional<FileChoice>& file = wanted(image).file) {
       EncodedTexture texture = encode_at(picture, file->format, file->quality, content_of(use), counted);
       if (texture.bytes.size() < most) return ImageOutput{std::move(texture), file->format};
@@ -379,42 +377,42 @@ Shrunk shrunk(const Prepared& prepared, std::span<const WantedImage> wanted, con
   return shrinker.take();
 }
 
-/// With images as small as it takes for all files together.
-Shrunk within_bytes(const Prepared& prepared, std::vector<WantedImage> limits, ShrinkOptions options,
-                    std::span<const VertexField> field, Context& context) {
-  const std::vector<ImageUse> uses = image_uses(prepared.model);
-  std::vector<WantedImage> known = limits;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    if (uses[i].is_ambiguous || prepared.new_maps.contains(static_cast<int>(i))) known[i] = {};
-  }
-  const auto most = static_cast<double>(*options.max_bytes);
+/// With images as small as it takes for all files together, from the images as they are.
+Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limits,
+                    const ShrinkOptions& options, std::span<const VertexField> field, Context& context) {
+  const auto most = static_cast<std::uint64_t>(*options.max_bytes);
   std::vector<double> pixels(kPictureSizes.begin(), kPictureSizes.end());
   // As seen aslant, and straight on.
   if (options.shown_pixels > 0) pixels = {0.75 * options.shown_pixels, 1.5 * options.shown_pixels};
-  ByteBudget budget(prepared.model, prepared.atlases, known, options.output, field, pixels, most, context);
-  double goal = most;
-  std::vector<WantedImage> last;
-  for (int round = 0;; ++round) {
-    // What is baked anew takes other bytes than was tried: again with less, until nothing gets smaller.
-    std::vector<WantedImage> wanted = budget.choose(goal);
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (wanted[i].width < 1) wanted[i] = limits[i];
-    }
-    Shrunk result = shrunk(prepared, wanted, options, field, context);
-    const auto bytes = static_cast<double>(result.bytes);
-    if (bytes <= most) return result;
-    const bool is_least = wanted == last || round >= kMostRounds;
-    last = std::move(wanted);
-    if (is_least) {
-      context.report(
-          "bytes-missed",
-          fmt::format("image files take {} bytes, {} more than asked for: no smaller ones were found",
-                      result.bytes, result.bytes - static_cast<std::uint64_t>(*options.max_bytes)),
-          "");
-      return result;
-    }
-    goal *= kHaste * most / bytes;
+  ByteBudget budget(prepared.model, prepared.files, prepared.atlases, limits, options.output, field, pixels,
+                    static_cast<double>(most), context);
+  Shrunk result = shrunk(prepared, budget.choose(static_cast<double>(most)), options, field, context);
+  if (result.bytes > most)
+    context.report(
+        "bytes-missed",
+        fmt::format("image files take {} bytes, {} more than asked for: no smaller ones were found",
+                    result.bytes, result.bytes - most),
+        "");
+  return result;
+}
+
+/// The same for images that are baked anew: first that, at their own sizes and without loss.
+Shrunk rebaked_within_bytes(Prepared prepared, std::vector<WantedImage> limits, ShrinkOptions options,
+                            std::span<const VertexField> field, Context& context) {
+  std::vector<WantedImage> whole;
+  for (const ImageChange::State& file : prepared.files)
+    whole.push_back({file.width, file.height, 0, true, SizeReason::none, FileChoice{}});
+  Prepared grown = prepared;
+  for (ImageChange::State& file : grown.files) file.bytes = std::numeric_limits<std::uint64_t>::max();
+  Shrunk baked = shrunk(grown, whole, options, field, context);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    if (baked.model.images[i] != prepared.model.images[i]) limits[i].stays = false;
   }
+  prepared.model = std::move(baked.model);
+  options.rebake = {};
+  Shrunk result = within_bytes(prepared, limits, options, field, context);
+  result.atlases = std::move(baked.atlases);
+  return result;
 }
 
 void check_options(const Model& model, const ShrinkOptions& options) {
@@ -467,9 +465,15 @@ Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::sp
   if (!field.empty()) check_fields(model, field);
   if (options.rebake.original != nullptr) check_simplified(*options.rebake.original, model);
   const Prepared prepared = prepare(model, options.rebake);
-  const std::vector<WantedImage> limits = limits_of(prepared.model, options);
-  Shrunk result = !options.max_bytes ? shrunk(prepared, limits, options, field, context)
-                                     : within_bytes(prepared, limits, options, field, context);
+  const std::vector<WantedImage> limits = limits_of(prepared, options);
+  Shrunk result;
+  if (!options.max_bytes) {
+    result = shrunk(prepared, limits, options, field, context);
+  } else if (options.rebake.original == nullptr) {
+    result = within_bytes(prepared, limits, options, field, context);
+  } else {
+    result = rebaked_within_bytes(prepared, limits, options, field, context);
+  }
   for (std::size_t i = 0; i < result.images.size(); ++i) {
     const std::string& why = result.images[i].kept_because;
     if (!why.empty())

@@ -85,9 +85,10 @@ struct Shrunk {
 /// material uses them, if they are read in more than one way, and if they cannot be decoded (KTX2, damaged).
 /// Sides are at least 1.
 ///
-/// With `max_bytes` sizes and qualities are chosen image by image so that least is lost (byte_budget.h), and
-/// again with less if they do not fit; no texels move, and the other limits hold too. What cannot change
-/// takes what it takes: if all is at its least and still too large, that is reported ("bytes-missed").
+/// With `max_bytes` sizes and qualities are chosen image by image so that pictures lose least
+/// (byte_budget.h), after baking anew if both are asked for; no texels move, and the other limits hold too.
+/// What cannot change takes what it takes: if all is at its least and still too large, that is reported
+/// ("bytes-missed").
 ///
 /// `field` [#meshes][#V] says how much is looked at, 0 … 1; empty for alike everywhere. One atlas after the
 /// other, each in parallel, all of its images in memory. Throws Error(usage) for options out of range or that
