@@ -85,8 +85,9 @@ class Ways {
   void add_beside(const ImageWay& way) {
     const auto [format, quality, fill] = *way.file;
     const Image8 picture = sized(way.width, way.height, fill);
-    const int step = quality_step(texels(picture)),
-              finer = texels(picture) > kLarge ? step / 2 : (step + 3) / 4;
+    const int step = quality_step(texels(picture)), finer = texels(picture) > kLarge    ? step / 2
+                                                            : texels(picture) > kMiddle ? 3
+                                                                                        : 1;
     for (int q = quality - step + finer; q < quality + step; q += finer) {
       if (q > 0 && q <= 100 && q != quality) add(picture, {format, q, fill});
     }
