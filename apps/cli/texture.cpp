@@ -62,8 +62,8 @@ class TextureVerb : public Verb {
     arguments.add(
         "Textures",
         {{"texture-size",
-          "The height in pixels at which the model will be shown: each image gets a texel for each "
-          "pixel that shows it, as seen from the views, and no more.",
+          "The height in pixels at which the model will be shown: each image is halved while it has a texel "
+          "for each pixel that shows it, as seen from the views; --texture-bytes looks at such pictures.",
           &shown_height_, "pixels", 1, 1 << 16},
          {"allow-miss", "Exit with 0 even if images take more than --texture-bytes.", &allow_miss_, ""}});
     arguments.add("Views", describe(views_));

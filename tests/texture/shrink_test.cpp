@@ -187,6 +187,9 @@ TEST(ShrinkTextures, OptionsAreChecked) {
   options.scales = {1, 1.5};
   test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
   options = {};
+  options.shown_pixels = -1;
+  test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
+  options = {};
   options.max_bytes = 0;
   test::expect_error([&] { shrink(two_images(), options); }, ErrorKind::usage, "");
 }

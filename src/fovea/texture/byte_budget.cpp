@@ -16,8 +16,6 @@ namespace {
 
 /// How often sums of losses become the weights that find the next.
 constexpr int kRounds = 6;
-/// A hundredth of a step of a byte, squared: no less counts.
-constexpr double kLeastLoss = 1e-4 / (255.0 * 255.0);
 
 /// How much of a squared difference lit pictures tell. With half as much for all but colours, as
 /// `loss_weight` has it, colours took too many bytes: DamagedHelmet at a quarter of its sides was 0.4 dB
@@ -135,7 +133,7 @@ ByteBudget::Numbers ByteBudget::numbers_within(double bytes) const {
         Sums lost(sums.size());
         add(lost, candidate, candidate.ways[w]);
         double loss = 0;
-        for (std::size_t c = 0; c < sums.size(); ++c) loss += lost[c] / std::max(sums[c], area * kLeastLoss);
+        for (std::size_t c = 0; c < sums.size(); ++c) loss += lost[c] / std::max(sums[c], area * kLeastImageLoss);
         own.push_back({w, candidate.ways[w].bytes, loss});
       }
       ladders.push_back(lower_hull(own));
@@ -167,17 +165,14 @@ std::vector<WantedImage> ByteBudget::wanted(const Numbers& numbers) const {
   return images;
 }
 
-std::vector<WantedImage> ByteBudget::choose(double bytes) {
-  const double room = bytes - kept_bytes_;
+std::vector<WantedImage> ByteBudget::choose() {
+  const double room = most_bytes_ - kept_bytes_;
   const Numbers first = numbers_within(room);
   double left = room;
   for (std::size_t c = 0; c < candidates_.size(); ++c) left -= candidates_[c].ways[first[c]].bytes;
   parallel_for_or_throw(context_, candidates_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      Candidate& candidate = candidates_[c];
-      if (!std::exchange(candidate.is_refined, true))
-        refine(candidate, candidate.ways[first[c]].bytes + left);
-    }
+    for (std::size_t c = begin; c < end; ++c)
+      refine(candidates_[c], candidates_[c].ways[first[c]].bytes + left);
   });
   return wanted(numbers_within(room));
 }

@@ -30,14 +30,14 @@ class ByteBudget {
  public:
   /// Images are those of the model; none may take as much as its file did before, in `files` [#images], whose
   /// formats stay. Those that materials read in different ways take what they take. `pixels` as for
-  /// ImageSights. Refers to the model, the files and the atlases. Nothing that takes more than `bytes` by
-  /// itself is looked at. Throws Error(cancelled).
+  /// ImageSights. Refers to the model, the files and the atlases. Throws Error(cancelled).
   ByteBudget(const Model& model, std::span<const ImageChange::State> files, std::span<const Atlas> atlases,
              std::span<const WantedImage> limits, const ImageOutputOptions& options,
              std::span<const VertexField> field, std::vector<double> pixels, double bytes, Context& context);
 
-  /// [#images] Of those whose files fit what loses least; the fewest bytes of all if none do.
-  std::vector<WantedImage> choose(double bytes);
+  /// [#images] Of those whose files fit what loses least; the fewest bytes of all if none do. To be called
+  /// once.
+  std::vector<WantedImage> choose();
 
  private:
   struct Candidate {
@@ -46,7 +46,6 @@ class ByteBudget {
     double area = 0;  // of the surface that shows it, as it is looked at
     ImageLimits limits{};
     std::vector<ImageWay> ways{};
-    bool is_refined = false;
   };
   using Numbers = std::vector<std::size_t>;  // [#candidates] of ways
   using Sums = std::vector<double>;          // [#pixels × 2] of losses: of colours, and of all
@@ -59,6 +58,7 @@ class ByteBudget {
   void refine(Candidate& candidate, double bytes) const;
   /// Adds the losses of a way.
   void add(Sums& sums, const Candidate& candidate, const ImageWay& way) const;
+  /// What loses least of what takes no more than so many bytes.
   Numbers numbers_within(double bytes) const;
   std::vector<WantedImage> wanted(const Numbers& numbers) const;
 

@@ -36,6 +36,9 @@ class ImageSights {
   std::vector<double> pixels_;
 };
 
+/// A hundredth of a step of a byte, squared: less is as good as nothing.
+inline constexpr double kLeastImageLoss = 1e-4 / (255.0 * 255.0);
+
 /// What pictures lose when an image is another one, in the same place.
 class ImageLoss {
  public:

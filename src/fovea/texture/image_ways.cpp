@@ -18,8 +18,6 @@ namespace {
 
 /// No image gets smaller than this many halves of what it was.
 constexpr int kMostHalvings = 5;
-/// A hundredth of a step of a byte, squared: no less counts.
-constexpr double kLeastLoss = 1e-4 / (255.0 * 255.0);
 constexpr int kLeastQuality = 15, kMostQuality = 98;
 
 /// Of how many sizes, formats and fillings more qualities are tried.
@@ -104,7 +102,7 @@ class Ways {
     double sum = 0;
     for (const ImageWay& way : std::span(ways_).subspan(last_small_)) {
       const auto [format, quality, fill] = *way.file;
-      const double cost = std::log(way.bytes) + std::log(sum_of_losses(way) + kLeastLoss);
+      const double cost = std::log(way.bytes) + std::log(sum_of_losses(way) + kLeastImageLoss);
       if (fill) {
         costs[{format, quality}] = cost;
       } else if (const auto filled = costs.find({format, quality}); filled != costs.end()) {
@@ -208,7 +206,9 @@ std::vector<ImageWay> finer_ways(std::span<const ImageWay> ways, double bytes, c
                                  const ImageLoss& loss, const Context& context) {
   Ways finer(image, limits, faces, loss, context);
   for (const ImageWay* way : best_kinds(ways, bytes)) finer.add_beside(*way);
-  return finer.take();
+  std::vector<ImageWay> found = finer.take();
+  std::erase_if(found, [&](const ImageWay& way) { return way.bytes >= limits.most_bytes; });
+  return found;
 }
 
 }  // namespace fovea

@@ -386,7 +386,7 @@ Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limit
   if (options.shown_pixels > 0) pixels = {0.75 * options.shown_pixels, 1.5 * options.shown_pixels};
   ByteBudget budget(prepared.model, prepared.files, prepared.atlases, limits, options.output, field, pixels,
                     static_cast<double>(most), context);
-  Shrunk result = shrunk(prepared, budget.choose(static_cast<double>(most)), options, field, context);
+  Shrunk result = shrunk(prepared, budget.choose(), options, field, context);
   if (result.bytes > most)
     context.report(
         "bytes-missed",
@@ -426,6 +426,8 @@ void check_options(const Model& model, const ShrinkOptions& options) {
     if (!(scale > 0 && scale <= 1))
       throw Error(ErrorKind::usage, fmt::format("a scale of {}, not above 0 up to 1", scale));
   }
+  if (!(options.shown_pixels >= 0 && std::isfinite(options.shown_pixels)))
+    throw Error(ErrorKind::usage, fmt::format("pictures of {} pixels", options.shown_pixels));
   if (options.max_bytes && (options.moves == TexelMoves::saliency || options.moves == TexelMoves::frequency))
     throw Error(ErrorKind::usage, "--texture-bytes leaves texels where they are: moved ones take more bytes",
                 {}, "leave out --warp, or ask for sizes instead of bytes");
