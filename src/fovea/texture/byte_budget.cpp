@@ -133,7 +133,8 @@ ByteBudget::Numbers ByteBudget::numbers_within(double bytes) const {
         Sums lost(sums.size());
         add(lost, candidate, candidate.ways[w]);
         double loss = 0;
-        for (std::size_t c = 0; c < sums.size(); ++c) loss += lost[c] / std::max(sums[c], area * kLeastImageLoss);
+        for (std::size_t c = 0; c < sums.size(); ++c)
+          loss += lost[c] / std::max(sums[c], area * kLeastImageLoss);
         own.push_back({w, candidate.ways[w].bytes, loss});
       }
       ladders.push_back(lower_hull(own));
