@@ -24,27 +24,27 @@ Image8 noise(int size) {
 
 class ImageWays : public testing::Test {
  protected:
-  Model model = test::textured(test::grid(3, 3), 1);
-  std::vector<AtlasFace> faces = atlas_faces(model, find_atlases(model).at(0));
-  ImageSights sights{model, faces, {}, {512}};
-  Image8 image = noise(64);
-  ImageUse use{.is_used = true, .meaning = {TexelMeaning::Kind::color}};
-  ImageLoss loss{sights, image, use, {}};
+  Model model_ = test::textured(test::grid(3, 3), 1);
+  std::vector<AtlasFace> faces_ = atlas_faces(model_, find_atlases(model_).at(0));
+  ImageSights sights_{model_, faces_, {}, {512}};
+  Image8 image_ = noise(64);
+  ImageUse use_{.is_used = true, .meaning = {TexelMeaning::Kind::color}};
+  ImageLoss loss_{sights_, image_, use_, {}};
 
   ImageLimits limits(TextureFormat format, int side = 64, double most_bytes = 1e9) const {
-    return {use, format, side, side, most_bytes};
+    return {use_, format, side, side, most_bytes};
   }
   std::vector<ImageWay> ways(const ImageLimits& limits, std::span<const AtlasFace> shown = {}) const {
-    return image_ways(image, limits, shown, loss, {});
+    return image_ways(image_, limits, shown, loss_, {});
   }
 };
 
 TEST_F(ImageWays, AreWhatTheyWouldBeAsFiles) {
   for (const ImageWay& way : ways(limits(TextureFormat::webp))) {
-    const Image8 small = way.width == 64 ? image : resized_for_way(image, way.width, way.height, use, {});
+    const Image8 small = way.width == 64 ? image_ : resized_for_way(image_, way.width, way.height, use_, {});
     const std::vector<std::uint8_t> file = encode_texture(small, way.file->format, way.file->quality);
     EXPECT_EQ(way.bytes, static_cast<double>(file.size()));
-    EXPECT_EQ(way.losses, loss.of(way.file->quality == 0 ? small : decode_image(file), {}));
+    EXPECT_EQ(way.losses, loss_.of(way.file->quality == 0 ? small : decode_image(file), {}));
   }
 }
 
@@ -65,20 +65,20 @@ TEST_F(ImageWays, NoneTakesTooManyBytesButTheSmallestOfAll) {
 
 TEST_F(ImageWays, AreFilledBetweenTrianglesAndAsTheyAre) {
   // Triangles in the left half only.
-  for (AtlasFace& face : faces)
+  for (AtlasFace& face : faces_)
     for (Vec2d& uv : face.uv) uv.x *= 0.5;
   const auto filled = [](const ImageWay& way) { return way.file->fill; };
-  const std::vector<ImageWay> found = ways(limits(TextureFormat::png, 40), faces);
+  const std::vector<ImageWay> found = ways(limits(TextureFormat::png, 40), faces_);
   EXPECT_EQ(std::ranges::count_if(found, filled), 6);  // 2, 4, ..., 32 and 40 texels
   EXPECT_EQ(found.size(), 12u);
   // At its own size nothing is filled.
-  EXPECT_EQ(ways(limits(TextureFormat::png), faces).size(), 11u);
+  EXPECT_EQ(ways(limits(TextureFormat::png), faces_).size(), 11u);
 }
 
 TEST_F(ImageWays, FinerOnesAreOfOtherQualities) {
   const ImageLimits asked = limits(TextureFormat::jpeg);
   const std::vector<ImageWay> coarse = ways(asked),
-                              fine = finer_ways(coarse, 3000, image, asked, {}, loss, {});
+                              fine = finer_ways(coarse, 3000, image_, asked, {}, loss_, {});
   EXPECT_FALSE(fine.empty());
   for (const ImageWay& way : fine) {
     EXPECT_TRUE(std::ranges::none_of(

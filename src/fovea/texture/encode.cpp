@@ -140,8 +140,8 @@ struct Excerpt {
 /// such, side by side; all of the image if it is not larger.
 Excerpt excerpt(const Counted& of) {
   const Image8& image = of.image;
-  constexpr int side = kTile * kTilesAcross;
-  if (image.width <= side && image.height <= side)
+  constexpr int kSide = kTile * kTilesAcross;
+  if (image.width <= kSide && image.height <= kSide)
     return {image, std::vector<std::uint8_t>(of.texels.begin(), of.texels.end())};
   const int width = std::min(kTile, image.width), height = std::min(kTile, image.height);
   std::vector<Square> tiles, counted, busy;
