@@ -351,9 +351,8 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
   fmt::print(
       "## Equal bytes\n\n"
       "Textures alone, in the bytes that plain resizing takes: resized plainly; to the same sides, with "
-      "texels "
-      "moved where that gains, and as near as the bytes allow (dB is how near); and with sizes and qualities "
-      "chosen for the bytes, for pictures of this size.\n\n"
+      "texels moved where that gains, and as near as the bytes allow (dB is how near); and with sizes and "
+      "qualities chosen for the bytes, for pictures of this size.\n\n"
       "| model | side | way | kB | dB | PSNR base | MS-SSIM base | FLIP base | PSNR lit | MS-SSIM lit | FLIP "
       "lit |\n"
       "|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");

@@ -147,6 +147,18 @@ TEST(Rebake, WhatIsBakedSharesTheBytes) {
   EXPECT_EQ(found.images[0].after.mime_type, "image/png");
 }
 
+TEST(Rebake, AFileThatCannotBeSmallerStays) {
+  Squares s = squares(1);
+  Image8 tiny(2, 2, 3, ColorEncoding::srgb);
+  tiny.at(0, 0)[0] = 200;
+  for (Model* model : {&s.original, &s.simplified}) model->images[0].bytes = encode_png(tiny);
+  ShrinkOptions options = rebake_of(s.original);
+  options.max_bytes = 10;
+  const Shrunk found = shrink(s.simplified, options);
+  EXPECT_LE(found.model.images[0].bytes.size(), s.original.images[0].bytes.size());
+  EXPECT_EQ(found.bytes, found.model.images[0].bytes.size());
+}
+
 TEST(Rebake, MovesAndBakesAtOnce) {
   const Squares s = squares(1);
   ShrinkOptions options = rebake_of(s.original);

@@ -20,7 +20,7 @@ struct ImageWay {
   int width = 0, height = 0;
   std::optional<FileChoice> file;  ///< None for the file as it is.
   double bytes = 0;
-  std::vector<double> losses;  ///< What pictures lose by it (`ImageLoss`).
+  std::vector<double> losses;  ///< [#pixels of the sights] What pictures lose by it (`ImageLoss`).
 };
 
 /// What an image is, and what it may become.

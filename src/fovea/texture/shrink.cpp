@@ -380,20 +380,12 @@ Shrunk shrunk(const Prepared& prepared, std::span<const WantedImage> wanted, con
 /// With images as small as it takes for all files together, from the images as they are.
 Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limits,
                     const ShrinkOptions& options, std::span<const VertexField> field, Context& context) {
-  const auto most = static_cast<std::uint64_t>(*options.max_bytes);
   std::vector<double> pixels(kPictureSizes.begin(), kPictureSizes.end());
   // As seen aslant, and straight on.
   if (options.shown_pixels > 0) pixels = {0.75 * options.shown_pixels, 1.5 * options.shown_pixels};
   ByteBudget budget(prepared.model, prepared.files, prepared.atlases, limits, options.output, field, pixels,
-                    static_cast<double>(most), context);
-  Shrunk result = shrunk(prepared, budget.choose(), options, field, context);
-  if (result.bytes > most)
-    context.report(
-        "bytes-missed",
-        fmt::format("image files take {} bytes, {} more than asked for: no smaller ones were found",
-                    result.bytes, result.bytes - most),
-        "");
-  return result;
+                    static_cast<double>(*options.max_bytes), context);
+  return shrunk(prepared, budget.choose(), options, field, context);
 }
 
 /// The same for images that are baked anew: first that, at their own sizes and without loss.
@@ -408,10 +400,18 @@ Shrunk rebaked_within_bytes(Prepared prepared, std::vector<WantedImage> limits, 
   for (std::size_t i = 0; i < limits.size(); ++i) {
     if (baked.model.images[i] != prepared.model.images[i]) limits[i].stays = false;
   }
+  const std::vector<EncodedImage> files = std::move(prepared.model.images);
   prepared.model = std::move(baked.model);
   options.rebake = {};
   Shrunk result = within_bytes(prepared, limits, options, field, context);
   result.atlases = std::move(baked.atlases);
+  // Where nothing is smaller than the file was, that stays.
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    std::vector<std::uint8_t>& bytes = result.model.images[i].bytes;
+    if (bytes.size() <= prepared.files[i].bytes) continue;
+    result.bytes -= bytes.size() - files[i].bytes.size();
+    result.model.images[i] = files[i];
+  }
   return result;
 }
 
@@ -476,6 +476,12 @@ Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::sp
   } else {
     result = rebaked_within_bytes(prepared, limits, options, field, context);
   }
+  if (options.max_bytes && result.bytes > static_cast<std::uint64_t>(*options.max_bytes))
+    context.report(
+        "bytes-missed",
+        fmt::format("image files take {} bytes, {} more than asked for: no smaller ones were found",
+                    result.bytes, result.bytes - static_cast<std::uint64_t>(*options.max_bytes)),
+        "");
   for (std::size_t i = 0; i < result.images.size(); ++i) {
     const std::string& why = result.images[i].kept_because;
     if (!why.empty())
