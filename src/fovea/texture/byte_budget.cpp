@@ -1,7 +1,6 @@
 #include "fovea/texture/byte_budget.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "fovea/base/error.h"
@@ -47,10 +46,11 @@ ByteBudget::ByteBudget(const Model& model, std::span<const ImageChange::State> f
   for (const EncodedImage& image : model.images) kept_bytes_ += static_cast<double>(image.bytes.size());
   for (std::size_t a = 0; a < atlases.size(); ++a) {
     context.advance_or_throw("sizes", static_cast<double>(a) / static_cast<double>(atlases.size()));
+    const double area = seen_area(model, atlases[a], field);
     std::vector<Candidate> found;
     for (const int image : atlases[a].images) {
       const auto i = static_cast<std::size_t>(image);
-      if (!uses_[i].is_ambiguous) found.push_back({i, &atlases[a], seen_area(model, atlases[a], field)});
+      if (!uses_[i].is_ambiguous) found.push_back({i, &atlases[a], area});
     }
     parallel_for_or_throw(context, found.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) measure(found[i]);

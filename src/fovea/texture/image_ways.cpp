@@ -8,7 +8,6 @@
 #include <tuple>
 #include <utility>
 
-#include "fovea/base/parallel.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/texture/bake.h"
 
@@ -27,7 +26,7 @@ constexpr int kLeastJpegQuality = 78;
 /// A higher quality gains nothing where a file loses hardly more than the size alone does.
 constexpr double kNearlyAll = 1.05;
 /// Texels up to which images are both filled and as they are; up to which WebP is tried without loss, which
-/// takes long; and up to which many qualities are.
+/// takes long; and up to which many qualities are tried.
 constexpr std::int64_t kSmall = 1 << 16, kMiddle = 1 << 18, kLarge = 1 << 20;
 
 /// From a quality that is tried to the next: small images are encoded in no time, and even colours may be met
@@ -71,12 +70,12 @@ class Ways {
   bool add_size(int width, int height) {
     const std::size_t before = ways_.size();
     const bool is_small = std::int64_t{width} * height <= kSmall;
-    if (is_small) last_small_ = ways_.size();
     for (const bool fill : {true, false}) {
       if (fill && !may_fill(width)) continue;
       if (!is_small && may_fill(width) && fill != prefers_filled()) continue;
       add_kind(width, height, fill);
     }
+    if (is_small) largest_small_ = {before, ways_.size() - before};
     return ways_.size() > before;
   }
 
@@ -100,7 +99,7 @@ class Ways {
   bool prefers_filled() const {
     std::map<std::pair<TextureFormat, int>, double> costs;
     double sum = 0;
-    for (const ImageWay& way : std::span(ways_).subspan(last_small_)) {
+    for (const ImageWay& way : std::span(ways_).subspan(largest_small_.first, largest_small_.count)) {
       const auto [format, quality, fill] = *way.file;
       const double cost = std::log(way.bytes) + std::log(sum_of_losses(way) + kLeastImageLoss);
       if (fill) {
@@ -159,7 +158,9 @@ class Ways {
   Image8 filled_;
   Image8 quarter_, filled_quarter_;  // a quarter of the sides; empty until needed
   bool is_filled_ = false;           // differs from the image
-  std::size_t last_small_ = 0;       // the first way of the largest small image
+  struct {
+    std::size_t first = 0, count = 0;
+  } largest_small_;  // the ways of that image
   std::vector<ImageWay> ways_;
 };
 
