@@ -30,6 +30,12 @@ class Replayed {
   }
   void remove(FaceId face) { face_gone_[face.index()] = true; }
   void join(const ValueJoin& join) { value_target_[join.layer][join.removed.index()] = join.kept; }
+  /// How many numbers a write has.
+  std::size_t width(const ValueWrite& write) const {
+    if (write.layer == kInvalid) return 3 * mesh_.position_morphs.size();
+    const AttributeLayer& layer = mesh_.layers[write.layer];
+    return static_cast<std::size_t>(layer.width) * (1 + layer.morphs.size());
+  }
   /// Sets numbers; returns where the next write's begin.
   const float* write(const ValueWrite& write, const float* numbers);
   TriMesh finish();
@@ -148,11 +154,10 @@ TriMesh Replayed::finish() {
   return out;
 }
 
-}  // namespace
-
-std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
-                            std::size_t step_count) {
-  if (step_count > record.steps.size()) throw Error(ErrorKind::usage, "the record has fewer steps", "replay");
+/// The meshes after the steps up to `step_count` for which `takes(s)`.
+template <class Takes>
+std::vector<TriMesh> replay_where(std::span<const TriMesh* const> sources, const CollapseRecord& record,
+                                  std::size_t step_count, Takes&& takes) {
   std::vector<Replayed> meshes;
   meshes.reserve(sources.size());
   for (const TriMesh* source : sources) meshes.emplace_back(*source);
@@ -161,6 +166,12 @@ std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const Colla
   for (std::size_t s = 0; s < step_count; ++s) {
     const CollapseStep& step = record.steps[s];
     Replayed& mesh = meshes[step.mesh];
+    if (!takes(s)) {
+      for (; write < step.writes_end; ++write) numbers += mesh.width(record.writes[write]);
+      face = step.faces_end;
+      join = step.joins_end;
+      continue;
+    }
     if (step.kind == StepKind::collapse) mesh.collapse(step);
     for (; face < step.faces_end; ++face) mesh.remove(record.removed_faces[face]);
     for (; join < step.joins_end; ++join) mesh.join(record.joins[join]);
@@ -169,6 +180,21 @@ std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const Colla
   std::vector<TriMesh> result;
   for (Replayed& mesh : meshes) result.push_back(mesh.finish());
   return result;
+}
+
+}  // namespace
+
+std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
+                            std::size_t step_count) {
+  if (step_count > record.steps.size()) throw Error(ErrorKind::usage, "the record has fewer steps", "replay");
+  return replay_where(sources, record, step_count, [](std::size_t) { return true; });
+}
+
+std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
+                            std::span<const std::uint8_t> taken) {
+  if (taken.size() != record.steps.size())
+    throw Error(ErrorKind::usage, "there must be one choice for each step", "replay");
+  return replay_where(sources, record, taken.size(), [&](std::size_t s) { return taken[s] != 0; });
 }
 
 }  // namespace fovea

@@ -64,4 +64,9 @@ struct CollapseRecord {
 std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
                             std::size_t step_count);
 
+/// The same after the steps for which `taken` [#steps] is not 0. They must be able to do without the others,
+/// see lod/multi_tessellation.h.
+std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
+                            std::span<const std::uint8_t> taken);
+
 }  // namespace fovea

@@ -1,0 +1,363 @@
+#include "fovea/lod/multi_tessellation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "fovea/base/error.h"
+#include "fovea/base/parallel.h"
+#include "fovea/surface/closest_point.h"
+
+namespace fovea {
+
+namespace {
+
+/// Steps whose points look for the original together, in parallel.
+constexpr std::size_t kBlock = 1 << 14;
+
+/// Goes through the steps once and notes what each needs, makes, and is off by.
+class Builder {
+ public:
+  Builder(const Model& original, MultiTessellation& levels, const Context& context)
+      : original_(original), levels_(levels), context_(context) {
+    number_elements();
+    link_corners();
+    for (const Mesh& mesh : original.meshes) surfaces_.push_back(surface_of(mesh.surface));
+    for (const Surface& surface : surfaces_) nearest_.emplace_back(surface);
+    scales_ = largest_scales(original);
+  }
+
+  void run(Context& context);
+
+ private:
+  static constexpr std::uint32_t kNever = kInvalid;
+
+  void number_elements();
+  void link_corners();
+  void check(const CollapseStep& step) const;
+  void take(std::size_t s);
+  void add_old_faces(std::uint32_t v);
+  void add_old_face(std::uint32_t f);
+  void remove_face(std::uint32_t f, std::size_t s);
+  void merge(const CollapseStep& step, std::uint32_t a, std::uint32_t b);
+  void note_needs(const CollapseStep& step);
+  void note_corners(std::uint32_t b);
+  double keep_points();
+  double old_extent() const;
+  void add_samples(std::size_t s, std::uint32_t mesh, std::uint32_t b);
+  void measure_samples();
+  void finish_errors();
+  Vec3d position(std::uint32_t v) const { return Vec3d(positions_[v]); }
+
+  /// Calls f(corner) for each corner at v of a face that is left, and forgets the others.
+  template <class F>
+  void for_corners(std::uint32_t v, F&& f) {
+    std::uint32_t* link = &first_corner_[v];
+    last_corner_[v] = kInvalid;
+    while (*link != kInvalid) {
+      const std::uint32_t c = *link;
+      if (!alive_[c / 3]) {
+        *link = next_corner_[c];
+        continue;
+      }
+      f(c);
+      last_corner_[v] = c;
+      link = &next_corner_[c];
+    }
+  }
+
+  const Model& original_;
+  MultiTessellation& levels_;
+  const Context& context_;
+  std::vector<double> scales_;  // [#meshes]
+  std::vector<Surface> surfaces_;
+  std::vector<ClosestPoint> nearest_;
+  std::vector<std::uint32_t> first_face_;  // [#meshes + 1]
+
+  // Of all meshes, as the steps have left them:
+  std::vector<Vec3f> positions_, originals_;            // [#V], in the space of their mesh
+  std::vector<std::array<std::uint32_t, 3>> faces_;     // [#F]
+  std::vector<char> alive_;                             // [#F]
+  std::vector<std::uint32_t> first_corner_, last_corner_, next_corner_;  // [#V], [#V], [#F × 3]
+  std::vector<std::uint32_t> made_by_;      // [#F], the step that made the face as it is
+  std::vector<std::uint32_t> stripped_by_;  // [#V], the last step that removed a face there
+  // Original vertices that are kept with each face, as lists.
+  std::vector<std::uint32_t> first_point_, next_point_;  // [#F], [#V]
+
+  // Of the present step:
+  std::vector<std::uint32_t> old_faces_, new_faces_;
+  std::vector<std::uint32_t> face_mark_, vertex_mark_;
+  std::uint32_t mark_ = 0;
+  std::vector<Vec3d> old_corners_;
+  std::vector<std::uint32_t> needs_, points_;
+
+  /// A point of a new triangle.
+  struct Sample {
+    Vec3d point;
+    std::uint32_t mesh = 0, step = 0;
+  };
+  std::vector<Sample> samples_;
+};
+
+void Builder::number_elements() {
+  levels_.first_vertex = {0};
+  first_face_ = {0};
+  std::uint64_t corners = 0;
+  for (const Mesh& mesh : original_.meshes) {
+    corners += 3 * mesh.surface.face_count();
+    if (corners >= kInvalid) throw Error(ErrorKind::limit, "the model has too many triangles for a record of levels");
+    levels_.first_vertex.push_back(levels_.first_vertex.back() +
+                                   static_cast<std::uint32_t>(mesh.surface.vertex_count()));
+    first_face_.push_back(first_face_.back() + static_cast<std::uint32_t>(mesh.surface.face_count()));
+  }
+  levels_.triangles = first_face_.back();
+}
+
+void Builder::link_corners() {
+  const std::size_t vertices = levels_.first_vertex.back(), faces = first_face_.back();
+  positions_.reserve(vertices);
+  faces_.reserve(faces);
+  for (std::size_t m = 0; m < original_.meshes.size(); ++m) {
+    const TriMesh& mesh = original_.meshes[m].surface;
+    positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const auto& t : mesh.triangles) {
+      faces_.push_back({levels_.first_vertex[m] + t[0].value, levels_.first_vertex[m] + t[1].value,
+                        levels_.first_vertex[m] + t[2].value});
+    }
+  }
+  originals_ = positions_;
+  alive_.assign(faces, 1);
+  first_corner_.assign(vertices, kInvalid);
+  last_corner_.assign(vertices, kInvalid);
+  next_corner_.assign(3 * faces, kInvalid);
+  made_by_.assign(faces, kNever);
+  stripped_by_.assign(vertices, kNever);
+  first_point_.assign(faces, kInvalid);
+  next_point_.assign(vertices, kInvalid);
+  face_mark_.assign(faces, 0);
+  vertex_mark_.assign(vertices, 0);
+  for (std::uint32_t c = 0; c < 3 * faces; ++c) {
+    const std::uint32_t v = faces_[c / 3][c % 3];
+    if (first_corner_[v] == kInvalid) {
+      first_corner_[v] = c;
+      next_point_[v] = std::exchange(first_point_[c / 3], v);
+    } else {
+      next_corner_[last_corner_[v]] = c;
+    }
+    last_corner_[v] = c;
+  }
+}
+
+/// Throws if a step is not one of this model.
+void Builder::check(const CollapseStep& step) const {
+  const auto is_vertex = [&](VertexId v) {
+    return v.valid() && v.index() < original_.meshes[step.mesh].surface.vertex_count();
+  };
+  const bool good = step.mesh < original_.meshes.size() &&
+                    (step.kind == StepKind::vanish ||
+                     (is_vertex(step.removed) && is_vertex(step.kept) && step.removed != step.kept));
+  if (!good) throw Error(ErrorKind::usage, "the record is of another model", "record");
+}
+
+void Builder::run(Context& context) {
+  const CollapseRecord& record = levels_.record;
+  if (record.triangles_before != levels_.triangles)
+    throw Error(ErrorKind::usage, "the record is of another model", "record",
+                fmt::format("it begins with {} triangles, the model has {}", record.triangles_before, levels_.triangles));
+  const std::size_t count = record.steps.size();
+  levels_.needs_end.reserve(count);
+  levels_.corners_end.reserve(count);
+  levels_.error.assign(count, 0.0f);
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    context.advance_or_throw("levels", static_cast<double>(first) / static_cast<double>(count));
+    const std::size_t end = std::min(first + kBlock, count);
+    for (std::size_t s = first; s < end; ++s) take(s);
+    measure_samples();
+  }
+  finish_errors();
+}
+
+void Builder::take(std::size_t s) {
+  const CollapseRecord& record = levels_.record;
+  const CollapseStep& step = record.steps[s];
+  check(step);
+  const bool collapses = step.kind == StepKind::collapse;
+  const std::uint32_t a = collapses ? levels_.vertex(step.mesh, step.removed) : kInvalid;
+  const std::uint32_t b = collapses ? levels_.vertex(step.mesh, step.kept) : kInvalid;
+  const std::size_t begin = s > 0 ? record.steps[s - 1].faces_end : 0;
+
+  ++mark_;
+  old_faces_.clear();
+  if (collapses) {
+    add_old_faces(a);
+    add_old_faces(b);
+  }
+  for (std::size_t i = begin; i < step.faces_end; ++i)
+    add_old_face(first_face_[step.mesh] + record.removed_faces[i].value);
+  note_needs(step);
+  old_corners_.clear();
+  for (const std::uint32_t f : old_faces_) {
+    for (const std::uint32_t v : faces_[f]) old_corners_.push_back(position(v));
+  }
+
+  for (std::size_t i = begin; i < step.faces_end; ++i)
+    remove_face(first_face_[step.mesh] + record.removed_faces[i].value, s);
+  if (collapses) merge(step, a, b);
+  new_faces_.clear();
+  for (const std::uint32_t f : old_faces_) {
+    if (!alive_[f]) continue;
+    new_faces_.push_back(f);
+    made_by_[f] = static_cast<std::uint32_t>(s);
+  }
+  note_corners(b);
+  levels_.error[s] = static_cast<float>(new_faces_.empty() ? old_extent() : keep_points());
+  if (collapses) add_samples(s, step.mesh, b);
+}
+
+void Builder::add_old_faces(std::uint32_t v) {
+  for_corners(v, [&](std::uint32_t c) { add_old_face(c / 3); });
+}
+
+void Builder::add_old_face(std::uint32_t f) {
+  if (face_mark_[f] == mark_ || !alive_[f]) return;
+  face_mark_[f] = mark_;
+  old_faces_.push_back(f);
+}
+
+void Builder::remove_face(std::uint32_t f, std::size_t s) {
+  alive_[f] = 0;
+  for (const std::uint32_t v : faces_[f]) stripped_by_[v] = static_cast<std::uint32_t>(s);
+}
+
+/// Gives a's corners to b, which moves.
+void Builder::merge(const CollapseStep& step, std::uint32_t a, std::uint32_t b) {
+  for_corners(a, [&](std::uint32_t c) { faces_[c / 3][c % 3] = b; });
+  for_corners(b, [](std::uint32_t) {});
+  if (first_corner_[b] == kInvalid) {
+    first_corner_[b] = first_corner_[a];
+  } else {
+    next_corner_[last_corner_[b]] = first_corner_[a];
+  }
+  if (last_corner_[a] != kInvalid) last_corner_[b] = last_corner_[a];
+  first_corner_[a] = last_corner_[a] = kInvalid;
+  if (step.moved) positions_[b] = step.position;
+}
+
+/// The steps that made the faces around the edge, or removed one at its ends: without these a vertex would
+/// have triangles here that this step does not know.
+void Builder::note_needs(const CollapseStep& step) {
+  needs_.clear();
+  for (const std::uint32_t f : old_faces_) needs_.push_back(made_by_[f]);
+  if (step.kind == StepKind::collapse) {
+    for (const VertexId v : {step.removed, step.kept})
+      needs_.push_back(stripped_by_[levels_.vertex(step.mesh, v)]);
+  }
+  std::sort(needs_.begin(), needs_.end());
+  needs_.erase(std::unique(needs_.begin(), needs_.end()), needs_.end());
+  if (!needs_.empty() && needs_.back() == kNever) needs_.pop_back();
+  levels_.needs.insert(levels_.needs.end(), needs_.begin(), needs_.end());
+  levels_.needs_end.push_back(static_cast<std::uint32_t>(levels_.needs.size()));
+}
+
+void Builder::note_corners(std::uint32_t b) {
+  const auto note = [&](std::uint32_t v) {
+    if (v == kInvalid || vertex_mark_[v] == mark_) return;
+    vertex_mark_[v] = mark_;
+    levels_.corners.push_back(v);
+  };
+  note(b);
+  for (const std::uint32_t f : new_faces_.empty() ? old_faces_ : new_faces_) {
+    for (const std::uint32_t v : faces_[f]) note(v);
+  }
+  levels_.corners_end.push_back(static_cast<std::uint32_t>(levels_.corners.size()));
+}
+
+/// Gives the original vertices that were kept with the old faces to the nearest of the new ones. Returns the
+/// largest distance.
+double Builder::keep_points() {
+  points_.clear();
+  for (const std::uint32_t f : old_faces_) {
+    for (std::uint32_t v = std::exchange(first_point_[f], kInvalid); v != kInvalid; v = next_point_[v])
+      points_.push_back(v);
+  }
+  double largest = 0;
+  for (const std::uint32_t v : points_) {
+    const Vec3d p(originals_[v]);
+    double least = std::numeric_limits<double>::infinity();
+    std::uint32_t best = kInvalid;
+    for (const std::uint32_t f : new_faces_) {
+      const auto& [i, j, k] = faces_[f];
+      const double d = length_squared(p - closest_on_triangle(p, position(i), position(j), position(k)).point);
+      if (d >= least) continue;
+      least = d;
+      best = f;
+    }
+    next_point_[v] = std::exchange(first_point_[best], v);
+    largest = std::max(largest, least);
+  }
+  return std::sqrt(largest);
+}
+
+/// Diagonal of the box around what was there.
+double Builder::old_extent() const {
+  Box box;
+  for (const Vec3d p : old_corners_) box.add(p);
+  return box.diagonal();
+}
+
+/// Notes the points of new triangles that look for the original.
+void Builder::add_samples(std::size_t s, std::uint32_t mesh, std::uint32_t b) {
+  const auto add = [&](Vec3d p) { samples_.push_back({p, mesh, static_cast<std::uint32_t>(s)}); };
+  const Vec3d at_b = position(b);
+  add(at_b);
+  for (const std::uint32_t v : levels_.corners_of(s)) {
+    if (v != b) add((at_b + position(v)) * 0.5);
+  }
+  for (const std::uint32_t f : new_faces_) {
+    const auto& [i, j, k] = faces_[f];
+    add((position(i) + position(j) + position(k)) / 3.0);
+  }
+}
+
+void Builder::measure_samples() {
+  std::vector<float> distance(samples_.size());
+  parallel_for_or_throw(context_, samples_.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      distance[i] = static_cast<float>(nearest_[samples_[i].mesh].nearest(samples_[i].point).distance);
+  });
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    float& error = levels_.error[samples_[i].step];
+    error = std::max(error, distance[i]);
+  }
+  samples_.clear();
+}
+
+/// To scene units, and none less than those that it needs.
+void Builder::finish_errors() {
+  for (std::size_t s = 0; s < levels_.error.size(); ++s) {
+    const double scale = scales_[levels_.record.steps[s].mesh];
+    float& error = levels_.error[s];
+    if (scale > 0) error = static_cast<float>(error * scale);
+    for (const std::uint32_t needed : levels_.needs_of(s)) error = std::max(error, levels_.error[needed]);
+  }
+}
+
+}  // namespace
+
+std::size_t MultiTessellation::bytes() const {
+  const auto size = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+  return size(record.steps) + size(record.removed_faces) + size(record.joins) + size(record.writes) +
+         size(record.floats) + size(needs_end) + size(needs) + size(corners_end) + size(corners) + size(error);
+}
+
+MultiTessellation make_multi_tessellation(const Model& original, CollapseRecord record, Context& context) {
+  MultiTessellation levels;
+  levels.record = std::move(record);
+  Builder(original, levels, context).run(context);
+  return levels;
+}
+
+}  // namespace fovea
