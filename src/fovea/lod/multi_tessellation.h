@@ -56,14 +56,14 @@ struct MultiTessellation {
 
 /// Of the record with which `original` was simplified.
 ///
-/// Errors are measured both ways and hold for the rest pose. From the original: each of its vertices is kept
-/// with a triangle of the level, and looks for the nearest of the new ones when a step replaces that. To the
-/// original: from the middles of new triangles and of their new edges, and the vertex between them, to the
-/// nearest point of the whole mesh. So they are those of the points looked at, not of what may lie between
-/// (docs/levels.md tells by how much that can be short). What vanishes altogether counts with its diameter: at
-/// this error it is as small as what may move. Lengths are those of the largest instance of a mesh.
+/// Errors are measured both ways, for the rest pose. From the original: its vertices and the middles of its
+/// edges are kept with the triangle that stands for them, and look for the nearest of the new ones when a step
+/// replaces that. To the original: three points of each new edge, the middle of each new triangle, and the
+/// vertex between them look for the nearest point of the whole mesh. A quarter is added for what lies between
+/// the points. What vanishes altogether counts with its diameter. Lengths are those of the largest instance of
+/// a mesh.
 ///
-/// O(#F log #F), about 10 µs for each triangle, partly parallel. Throws Error(usage) if the record is of
+/// O(#F log #F), some 20 µs for each triangle, partly parallel. Throws Error(usage) if the record is of
 /// another model, Error(cancelled).
 MultiTessellation make_multi_tessellation(const Model& original, CollapseRecord record, Context& context);
 
