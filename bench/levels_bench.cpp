@@ -43,6 +43,7 @@ Leveled make_leveled(const Subject& subject, Context& context) {
   SimplifyOptions options;
   options.metric = Metric::quadric;
   options.ratio = kCoarsest;
+  if (getenv("HALF")) options.placement = Placement::half_edge;
   CollapseRecord record;
   result.simplify_seconds = seconds([&] { record = simplify(result.original, options, {}, context).record; });
   result.build_seconds = seconds(
@@ -79,6 +80,27 @@ void print_errors(const std::string& name, const Leveled& model, const Context& 
   }
 }
 
+/// A ball that stays as it is, all else as coarse as it may be.
+void print_focus(const std::string& name, const Leveled& model) {
+  const Surface original = scene_surface(model.original, rest_pose(model.original)).surface;
+  const Box box = bounds(model.original);
+  for (const double radius : {0.05, 0.1, 0.2}) {
+    for (const double elsewhere : {0.003, 0.01, 0.1}) {
+      std::vector<float> allowed(model.levels.first_vertex.back(), static_cast<float>(elsewhere * box.diagonal()));
+      const Vec3d center = original.position(0);
+      const auto inside = [&](std::uint32_t v) { return length(original.position(v) - center) < radius * box.diagonal(); };
+      for (std::uint32_t v = 0; v < allowed.size(); ++v) {
+        if (inside(v)) allowed[v] = 0;
+      }
+      std::uint64_t kept = 0;
+      for (const auto& t : original.triangles) kept += inside(t[0]) || inside(t[1]) || inside(t[2]);
+      const Cut cut = cut_within(model.levels, allowed), plain = cut_at_error(model.levels, elsewhere * box.diagonal());
+      fmt::print("| {} | {} | {} | {} | {} | {} |\n", name, radius, elsewhere, kept, triangles_of(model.levels, plain),
+                 triangles_of(model.levels, cut));
+    }
+  }
+}
+
 int run(const std::vector<std::string>& names) {
   std::vector<Subject> subjects = speed_subjects();
   std::erase_if(subjects, [&](const Subject& s) {
@@ -90,6 +112,8 @@ int run(const std::vector<std::string>& names) {
     const Leveled model = make_leveled(subject, context);
     fmt::print("| model | triangles | steps | simplify s | build s | bytes | query ms | read ms | left |\n");
     print_costs(subject.name, model);
+    fmt::print("\n| model | radius | elsewhere | triangles in the ball | without it | left |\n");
+    print_focus(subject.name, model);
     fmt::print("\n| model | allowed | triangles | lost | added | mean | measured : allowed |\n");
     print_errors(subject.name, model, context);
   }

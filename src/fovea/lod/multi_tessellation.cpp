@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "fovea/base/error.h"
@@ -22,6 +23,37 @@ constexpr double kMargin = 1.25;
 /// Steps whose points look for the original together, in parallel.
 constexpr std::size_t kBlock = 1 << 14;
 
+/// Throws if a step is not one of this model, or its runs do not go on from those before.
+void check_step(const Model& original, const CollapseRecord& record, std::size_t s) {
+  const CollapseStep& step = record.steps[s];
+  const CollapseStep before = s > 0 ? record.steps[s - 1] : CollapseStep();
+  bool good = step.mesh < original.meshes.size() && step.faces_end >= before.faces_end &&
+              step.joins_end >= before.joins_end && step.writes_end >= before.writes_end &&
+              step.faces_end <= record.removed_faces.size() && step.joins_end <= record.joins.size() &&
+              step.writes_end <= record.writes.size();
+  if (good) {
+    const TriMesh& mesh = original.meshes[step.mesh].surface;
+    const auto has_value = [&](std::uint32_t layer, std::uint32_t value) {
+      return layer < mesh.layers.size() && value < mesh.layers[layer].size();
+    };
+    if (step.kind == StepKind::collapse) {
+      good = step.removed.value < mesh.vertex_count() && step.kept.value < mesh.vertex_count() &&
+             step.removed != step.kept;
+    }
+    for (std::size_t i = before.faces_end; i < step.faces_end; ++i)
+      good = good && record.removed_faces[i].value < mesh.face_count();
+    for (std::size_t i = before.joins_end; i < step.joins_end; ++i) {
+      const ValueJoin& join = record.joins[i];
+      good = good && has_value(join.layer, join.removed.value) && has_value(join.layer, join.kept.value);
+    }
+    for (std::size_t i = before.writes_end; i < step.writes_end; ++i) {
+      const ValueWrite& write = record.writes[i];
+      good = good && (write.layer == kInvalid ? write.value < mesh.vertex_count() : has_value(write.layer, write.value));
+    }
+  }
+  if (!good) throw Error(ErrorKind::usage, "the record is of another model", fmt::format("step {}", s));
+}
+
 /// Goes through the steps once and notes what each needs, makes, and is off by.
 class Builder {
  public:
@@ -29,6 +61,7 @@ class Builder {
       : original_(original), levels_(levels), context_(context) {
     number_elements();
     link_corners();
+    find_homes();
     choose_points();
     for (const Mesh& mesh : original.meshes) surfaces_.push_back(surface_of(mesh.surface));
     for (const Surface& surface : surfaces_) nearest_.emplace_back(surface);
@@ -42,9 +75,11 @@ class Builder {
 
   void number_elements();
   void link_corners();
+  void find_homes();
   void choose_points();
-  void check(const CollapseStep& step) const;
   void take(std::size_t s);
+  bool changes_kept(std::size_t s, std::uint32_t b);
+  std::uint32_t vertex_now(std::uint32_t v);
   void add_old_faces(std::uint32_t v);
   void add_old_face(std::uint32_t f);
   void remove_face(std::uint32_t f, std::size_t s);
@@ -88,6 +123,8 @@ class Builder {
   std::vector<std::array<std::uint32_t, 3>> faces_;     // [#F]
   std::vector<char> alive_;                             // [#F]
   std::vector<std::uint32_t> first_corner_, last_corner_, next_corner_;  // [#V], [#V], [#F × 3]
+  std::vector<std::uint32_t> merged_into_;                // [#V], itself if it is left
+  std::vector<std::vector<std::vector<std::uint32_t>>> home_;  // [#meshes][#layers][#values], its original vertex
   std::vector<std::uint32_t> made_by_;      // [#F], the step that made the face as it is
   std::vector<std::uint32_t> stripped_by_;  // [#V], the last step that removed a face there
   // Points of the original, its vertices and the middles of its edges, and those that each face stands for.
@@ -150,6 +187,8 @@ void Builder::link_corners() {
   first_corner_.assign(vertices, kInvalid);
   last_corner_.assign(vertices, kInvalid);
   next_corner_.assign(3 * faces, kInvalid);
+  merged_into_.resize(vertices);
+  std::iota(merged_into_.begin(), merged_into_.end(), 0u);
   made_by_.assign(faces, kNever);
   stripped_by_.assign(vertices, kNever);
   face_mark_.assign(faces, 0);
@@ -162,6 +201,20 @@ void Builder::link_corners() {
       next_corner_[last_corner_[v]] = c;
     }
     last_corner_[v] = c;
+  }
+}
+
+/// Notes the vertex of each attribute value.
+void Builder::find_homes() {
+  for (std::size_t m = 0; m < original_.meshes.size(); ++m) {
+    auto& homes = home_.emplace_back();
+    for (const AttributeLayer& layer : original_.meshes[m].surface.layers) {
+      auto& home = homes.emplace_back(layer.size(), kInvalid);
+      for (std::size_t c = 0; c < layer.corner_value.size(); ++c) {
+        const ValueId value = layer.corner_value[c];
+        if (value.valid()) home[value.index()] = faces_[first_face_[m] + c / 3][c % 3];
+      }
+    }
   }
 }
 
@@ -186,17 +239,6 @@ void Builder::choose_points() {
   }
 }
 
-/// Throws if a step is not one of this model.
-void Builder::check(const CollapseStep& step) const {
-  const auto is_vertex = [&](VertexId v) {
-    return v.valid() && v.index() < original_.meshes[step.mesh].surface.vertex_count();
-  };
-  const bool good = step.mesh < original_.meshes.size() &&
-                    (step.kind == StepKind::vanish ||
-                     (is_vertex(step.removed) && is_vertex(step.kept) && step.removed != step.kept));
-  if (!good) throw Error(ErrorKind::usage, "the record is of another model", "record");
-}
-
 void Builder::run(Context& context) {
   const CollapseRecord& record = levels_.record;
   if (record.triangles_before != levels_.triangles)
@@ -218,7 +260,7 @@ void Builder::run(Context& context) {
 void Builder::take(std::size_t s) {
   const CollapseRecord& record = levels_.record;
   const CollapseStep& step = record.steps[s];
-  check(step);
+  check_step(original_, record, s);
   const bool collapses = step.kind == StepKind::collapse;
   const std::uint32_t a = collapses ? levels_.vertex(step.mesh, step.removed) : kInvalid;
   const std::uint32_t b = collapses ? levels_.vertex(step.mesh, step.kept) : kInvalid;
@@ -228,7 +270,7 @@ void Builder::take(std::size_t s) {
   old_faces_.clear();
   if (collapses) {
     add_old_faces(a);
-    add_old_faces(b);
+    if (changes_kept(s, b)) add_old_faces(b);
   }
   for (std::size_t i = begin; i < step.faces_end; ++i)
     add_old_face(first_face_[step.mesh] + record.removed_faces[i].value);
@@ -250,6 +292,33 @@ void Builder::take(std::size_t s) {
   note_corners(b);
   levels_.error[s] = static_cast<float>(new_faces_.empty() ? old_extent() : keep_points());
   if (collapses) add_samples(s, step.mesh, b);
+}
+
+/// Whether a collapse changes triangles at b that are not at a.
+bool Builder::changes_kept(std::size_t s, std::uint32_t b) {
+  const CollapseRecord& record = levels_.record;
+  const CollapseStep& step = record.steps[s];
+  if (step.moved) return true;
+  const auto is_at_b = [&](std::uint32_t layer, ValueId value) {
+    const std::uint32_t home = home_[step.mesh][layer][value.index()];
+    return home != kInvalid && vertex_now(home) == b;
+  };
+  const std::size_t first_join = s > 0 ? record.steps[s - 1].joins_end : 0;
+  for (std::size_t i = first_join; i < step.joins_end; ++i) {
+    if (is_at_b(record.joins[i].layer, record.joins[i].removed)) return true;
+  }
+  const std::size_t first_write = s > 0 ? record.steps[s - 1].writes_end : 0;
+  for (std::size_t i = first_write; i < step.writes_end; ++i) {
+    const ValueWrite& write = record.writes[i];
+    if (write.layer == kInvalid || is_at_b(write.layer, ValueId{write.value})) return true;
+  }
+  return false;
+}
+
+/// What an original vertex has become.
+std::uint32_t Builder::vertex_now(std::uint32_t v) {
+  while (merged_into_[v] != v) v = merged_into_[v] = merged_into_[merged_into_[v]];
+  return v;
 }
 
 void Builder::add_old_faces(std::uint32_t v) {
@@ -278,6 +347,7 @@ void Builder::merge(const CollapseStep& step, std::uint32_t a, std::uint32_t b) 
   }
   if (last_corner_[a] != kInvalid) last_corner_[b] = last_corner_[a];
   first_corner_[a] = last_corner_[a] = kInvalid;
+  merged_into_[a] = b;
   if (step.moved) positions_[b] = step.position;
 }
 
