@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fovea/base/parallel.h"
-#include "fovea/render/render.h"
+#include "fovea/render/depth_map.h"
 #include "fovea/surface/curvature.h"
 
 namespace fovea {
@@ -37,43 +37,6 @@ TriMesh upright(const Surface& surface, UpAxis up) {
   return mesh;
 }
 
-/// What is in front at each pixel of a view, or up to a pixel beside it: the farthest of nine, so that a
-/// surface does not hide itself where it is seen at an angle.
-class DepthMap {
- public:
-  DepthMap(const RenderScene& scene, const View& view, const Context& context)
-      : view_(view), pixel_(2 * view.half_height / kSize), depth_(kSize * kSize) {
-    const VisibleSurface nearest = visible_surface(scene, view, kSize, kSize, context);
-    for (int y = 0; y < kSize; ++y) {
-      for (int x = 0; x < kSize; ++x) {
-        float farthest = 0;
-        for (int dy = -1; dy <= 1; ++dy) {
-          for (int dx = -1; dx <= 1; ++dx)
-            farthest = std::max(farthest, nearest.distance[at(clamp(x + dx), clamp(y + dy))]);
-        }
-        depth_[at(x, y)] = static_cast<double>(farthest);
-      }
-    }
-  }
-
-  bool shows(Vec3d p) const {
-    const Vec3d eye = view_.to_eye(p);
-    const auto x = static_cast<int>(std::floor((eye.x + view_.half_height) / pixel_)),
-               y = static_cast<int>(std::floor((view_.half_height - eye.y) / pixel_));
-    return eye.z <= depth_[at(clamp(x), clamp(y))] + pixel_;
-  }
-
- private:
-  static int clamp(int i) { return std::clamp(i, 0, kSize - 1); }
-  static std::size_t at(int x, int y) {
-    return static_cast<std::size_t>(y) * kSize + static_cast<std::size_t>(x);
-  }
-
-  View view_;
-  double pixel_;
-  std::vector<double> depth_;
-};
-
 }  // namespace
 
 Vec3d direction(UpAxis up) {
@@ -101,7 +64,7 @@ VertexField visibility(const Surface& surface, const Adjacency& adjacency, const
   const std::vector<View> views = make_views(options, scene.sphere);
   const auto share = 1 / static_cast<float>(views.size());
   for (const View& view : views) {
-    const DepthMap depth(scene, view, context);
+    const DepthMap depth(scene, view, kSize, context);
     parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const double cosine = dot(normals[v], view.back);
