@@ -199,7 +199,8 @@ class SurfaceDistances {
     for (const std::uint32_t corner : corners) {
       const double before = length(whole_.surface.position(corner) - point);
       for (const auto& [vertex, distance] : search_.from(corner, std::min(reach_ * unit, farthest_))) {
-        lower(labels.values()[vertex], (before + distance) / unit);
+        const double label = (before + distance) / unit;
+        if (label <= reach_) lower(labels.values()[vertex], label);
       }
     }
     mark_joined(corners[0], is_joined);
