@@ -139,6 +139,12 @@ void Arguments::parse(const std::vector<std::string>& words, const std::string& 
         // CLI11 counts a flag up for --name and down for --no-name and --name=false.
         const auto count_up = [&](std::int64_t count) { set(option, count > 0 ? "true" : "false"); };
         app.add_flag_function(names + ",!--no-" + option.name, count_up, option.help);
+      } else if (option.is_list()) {
+        const auto add = [&](const std::vector<std::string>& texts) {
+          for (const std::string& text : texts) set(option, text);
+        };
+        app.add_option_function<std::vector<std::string>>(names, add)->expected(1)->multi_option_policy(
+            CLI::MultiOptionPolicy::TakeAll);
       } else {
         app.add_option_function<std::string>(names, [&](const std::string& text) { set(option, text); })
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);

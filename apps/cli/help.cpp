@@ -20,12 +20,14 @@ std::string upper(std::string text) {
   return text;
 }
 
+bool is_text(const Option& option) {
+  return std::holds_alternative<std::string*>(option.value) || option.is_list();
+}
+
 // The word that stands for an option's value: "N", "X", a choice, or for text the unit ("FILE").
 std::string value_name(const Option& option) {
   if (std::holds_alternative<bool*>(option.value)) return {};
-  if (std::holds_alternative<std::string*>(option.value)) {
-    return option.unit.empty() ? "TEXT" : upper(option.unit);
-  }
+  if (is_text(option)) return option.unit.empty() ? "TEXT" : upper(option.unit);
   if (const auto* named = std::get_if<Option::Choice>(&option.value))
     return named->alone.empty() ? option.range_text() : "[" + option.range_text() + "]";
   const bool whole = std::holds_alternative<std::int64_t*>(option.value) ||
@@ -37,8 +39,6 @@ bool is_optional(const Option& option) {
   return std::holds_alternative<std::optional<std::int64_t>*>(option.value) ||
          std::holds_alternative<std::optional<double>*>(option.value);
 }
-
-bool is_text(const Option& option) { return std::holds_alternative<std::string*>(option.value); }
 
 std::string flag_text(const Option& option, const std::string& default_text) {
   const std::string shorter = short_flag(option.name);

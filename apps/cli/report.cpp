@@ -17,6 +17,7 @@ struct ToJson {
   Json operator()(const std::int64_t* v) const { return *v; }
   Json operator()(const double* v) const { return number_json(*v); }
   Json operator()(const std::string* v) const { return *v; }
+  Json operator()(const std::vector<std::string>* v) const { return *v; }
   Json operator()(const std::optional<std::int64_t>* v) const { return v->has_value() ? Json(**v) : Json(); }
   Json operator()(const std::optional<double>* v) const { return v->has_value() ? number_json(**v) : Json(); }
   Json operator()(const Option::Choice& c) const { return c.names.at(static_cast<std::size_t>(c.get())); }

@@ -1,10 +1,15 @@
 #include "shared_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/judge/compare.h"
+#include "text.h"
 
 namespace fovea::cli {
 
@@ -57,6 +62,26 @@ void need_views(Arguments& arguments, const ViewOptions& views) {
                     return views.set == ViewSet::fibonacci || views.set == ViewSet::orbit;
                   }});
   arguments.need({{"elevation"}, "--views orbit", [&views] { return views.set == ViewSet::orbit; }});
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t least,
+                                  std::size_t most) {
+  std::vector<double> numbers;
+  bool good = true;
+  for (std::size_t begin = 0; good && begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    double number = 0;
+    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, number);
+    good = error == std::errc() && rest == text.data() + end && std::isfinite(number);
+    numbers.push_back(number);
+    begin = end + 1;
+  }
+  if (!good || numbers.size() < least || numbers.size() > most) {
+    const std::string count = least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
+    throw Error(ErrorKind::usage, fmt::format("'{}' is not a value for it", printable(text)), "--" + option,
+                fmt::format("write {} numbers with commas between them and no blanks", count));
+  }
+  return numbers;
 }
 
 }  // namespace fovea::cli

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "arguments.h"
 #include "fovea/io/write.h"
@@ -21,6 +22,10 @@ Option describe_view_size(std::int64_t& size);
 Option describe_columns(std::int64_t& columns);
 /// An option that names numbers per vertex (field_source.h); `help` says what for.
 Option describe_field(const std::string& name, const std::string& help, std::string& source);
+
+/// "34,89": the numbers of an option's text, `least` to `most` of them. Throws Error(usage) with the option.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t least,
+                                  std::size_t most);
 
 /// What the options of written models need of each other.
 void need_format(Arguments& arguments, const WriteOptions& options);

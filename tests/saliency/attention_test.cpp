@@ -167,7 +167,7 @@ TEST(Attention, OnTheSurfaceOtherPiecesAreReachedStraight) {
     const auto expect = [&](std::size_t mesh, double distance) {
       const float label = labels.attended[mesh].values()[v];
       if (distance < 0.4) {
-        EXPECT_NEAR(label, distance / 0.002, 4) << v;
+        EXPECT_NEAR(label, distance / 0.002, 8) << v;  // ways begin at a corner of the triangle under the focus
       } else {
         EXPECT_EQ(label, kNone) << v;
       }

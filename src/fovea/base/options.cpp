@@ -68,6 +68,7 @@ std::string Option::range_text() const {
 std::string Option::value_text() const {
   return std::visit(Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
                                [](const std::string* v) { return *v; },
+                               [](const std::vector<std::string>* v) { return fmt::format("{}", fmt::join(*v, " ")); },
                                [](const Choice& c) { return c.names.at(static_cast<std::size_t>(c.get())); },
                                [](const auto* v) {
                                  if constexpr (requires { v->has_value(); }) {
@@ -85,6 +86,7 @@ void Option::parse(const std::string& text) {
                           *v = text == "true";
                         },
                         [&](std::string* v) { *v = text; },
+                        [&](std::vector<std::string>* v) { v->push_back(text); },
                         [&](Choice& c) {
                           const auto at = std::find(c.names.begin(), c.names.end(), text);
                           if (at == c.names.end()) bad_value(*this, text);

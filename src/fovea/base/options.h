@@ -20,8 +20,9 @@ struct Option {
     std::function<void(int)> set;
     std::string alone{};  ///< The name meant by the flag without a value; empty if it needs one.
   };
+  /// A list gets one more with every text that is parsed.
   using Value = std::variant<bool*, std::int64_t*, double*, std::string*, std::optional<std::int64_t>*,
-                             std::optional<double>*, Choice>;
+                             std::optional<double>*, std::vector<std::string>*, Choice>;
 
   std::string name;  ///< Kebab case without dashes in front: "uv-weight".
   std::string help;  ///< One sentence: meaning and the reason of the default.
@@ -34,6 +35,7 @@ struct Option {
   std::string range_text() const;
   /// The present value as text; "none" for an empty optional.
   std::string value_text() const;
+  bool is_list() const { return std::holds_alternative<std::vector<std::string>*>(value); }
   /// Sets the value from text. Throws Error(usage) naming the option, the text and the range.
   void parse(const std::string& text);
   /// Throws Error(usage) if the present value is outside the range.

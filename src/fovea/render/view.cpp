@@ -113,6 +113,15 @@ View view_onto(const Sphere& sphere, Vec3d direction, double fov_deg, double mar
   return view;
 }
 
+View view_from(Vec3d eye, Vec3d target, double fov_deg) {
+  const Vec3d away = eye - target;
+  View view = view_onto({target, length(away)}, normalized(away), fov_deg, 0);
+  view.eye = rounded(eye);
+  if (!view.perspective) view.half_height = rounded(0.5 * length(away));
+  view.near = rounded(1e-3 * length(away));
+  return view;
+}
+
 std::vector<View> make_views(const ViewOptions& options, const Sphere& sphere) {
   std::vector<View> views;
   for (const Vec3d& direction : directions(options)) {

@@ -36,8 +36,7 @@ class Replayed {
     const AttributeLayer& layer = mesh_.layers[write.layer];
     return static_cast<std::size_t>(layer.width) * (1 + layer.morphs.size());
   }
-  /// Sets numbers; returns where the next write's begin.
-  const float* write(const ValueWrite& write, const float* numbers);
+  const float* write(const ValueWrite& write, const float* numbers) { return write_numbers(mesh_, write, numbers); }
   TriMesh finish();
 
  private:
@@ -56,25 +55,6 @@ class Replayed {
   std::vector<std::vector<ValueId>> value_target_;
   std::vector<bool> face_gone_;
 };
-
-const float* Replayed::write(const ValueWrite& write, const float* numbers) {
-  if (write.layer == kInvalid) {
-    for (auto& morph : mesh_.position_morphs) {
-      morph[write.value] = {numbers[0], numbers[1], numbers[2]};
-      numbers += 3;
-    }
-    return numbers;
-  }
-  AttributeLayer& layer = mesh_.layers[write.layer];
-  const auto width = static_cast<std::size_t>(layer.width);
-  const auto set = [&](std::vector<float>& values) {
-    if (!values.empty()) std::copy_n(numbers, width, values.data() + write.value * width);
-    numbers += width;
-  };
-  set(layer.values);
-  for (auto& morph : layer.morphs) set(morph);
-  return numbers;
-}
 
 /// The triangles that are left, with the vertices and values that theirs have become.
 void Replayed::gather_faces(TriMesh& out) {
@@ -183,6 +163,25 @@ std::vector<TriMesh> replay_where(std::span<const TriMesh* const> sources, const
 }
 
 }  // namespace
+
+const float* write_numbers(TriMesh& mesh, const ValueWrite& write, const float* numbers) {
+  if (write.layer == kInvalid) {
+    for (auto& morph : mesh.position_morphs) {
+      morph[write.value] = {numbers[0], numbers[1], numbers[2]};
+      numbers += 3;
+    }
+    return numbers;
+  }
+  AttributeLayer& layer = mesh.layers[write.layer];
+  const auto width = static_cast<std::size_t>(layer.width);
+  const auto set = [&](std::vector<float>& values) {
+    if (!values.empty()) std::copy_n(numbers, width, values.data() + write.value * width);
+    numbers += width;
+  };
+  set(layer.values);
+  for (auto& morph : layer.morphs) set(morph);
+  return numbers;
+}
 
 std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
                             std::size_t step_count) {

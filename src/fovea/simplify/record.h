@@ -42,6 +42,9 @@ struct ValueWrite {
   std::uint32_t value = 0;  ///< ValueId, or VertexId for position morphs.
 };
 
+/// Sets the numbers of a write, which begin at `numbers`, and returns where those of the next do.
+const float* write_numbers(TriMesh& mesh, const ValueWrite& write, const float* numbers);
+
 /// The canonical output of simplification: every step in order, with all that is needed to replay it
 /// on the mesh that it started from. Any level of detail is a replay of the first n steps.
 struct CollapseRecord {
