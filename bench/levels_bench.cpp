@@ -1,18 +1,28 @@
 // What a record of levels costs and holds, as Markdown.
-// levels_bench [MODEL-NAME...]   building it, queries, and errors against the original; minutes
+// levels_bench [--queries N] [MODEL-NAME...]   building it, queries, errors against the original, and N
+// random
+//     queries whose levels are looked at; minutes
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "fovea/base/error.h"
+#include "fovea/base/random.h"
 #include "fovea/judge/surface_distance.h"
 #include "fovea/lod/cut.h"
+#include "fovea/lod/live_level.h"
 #include "fovea/lod/multi_tessellation.h"
 #include "fovea/simplify/simplify.h"
+#include "fovea/surface/closest_point.h"
+#include "fovea/surface/half_edges.h"
 #include "fovea/surface/pose.h"
 #include "fovea/surface/scene_surface.h"
 #include "subjects.h"
@@ -43,11 +53,11 @@ Leveled make_leveled(const Subject& subject, Context& context) {
   SimplifyOptions options;
   options.metric = Metric::quadric;
   options.ratio = kCoarsest;
-  if (getenv("HALF")) options.placement = Placement::half_edge;
+  options.placement = Placement::half_edge;
   CollapseRecord record;
   result.simplify_seconds = seconds([&] { record = simplify(result.original, options, {}, context).record; });
-  result.build_seconds = seconds(
-      [&] { result.levels = make_multi_tessellation(result.original, std::move(record), context); });
+  result.build_seconds =
+      seconds([&] { result.levels = make_multi_tessellation(result.original, std::move(record), context); });
   return result;
 }
 
@@ -61,7 +71,8 @@ void print_costs(const std::string& name, const Leveled& model) {
   const double read = seconds([&] { level_of(model.original, levels, cut); });
   fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {:.0f} | {:.1f} | {:.0f} | {} |\n", name, levels.triangles,
              levels.step_count(), model.simplify_seconds, model.build_seconds,
-             static_cast<double>(levels.bytes()) / triangles, 1e3 * query, 1e3 * read, triangles_of(levels, cut));
+             static_cast<double>(levels.bytes()) / triangles, 1e3 * query, 1e3 * read,
+             triangles_of(levels, cut));
 }
 
 /// What a level is off by, against what its record says.
@@ -74,34 +85,156 @@ void print_errors(const std::string& name, const Leveled& model, const Context& 
     const SurfaceDistance d =
         surface_distance(original, scene_surface(level, rest_pose(level)).surface, kSamples, context);
     fmt::print("| {} | {:.2f} % | {} | {:.4f} % | {:.4f} % | {:.4f} % | {:.2f} |\n", name, 100 * error,
-               triangles_of(model.levels, cut), 100 * d.forward.max / diagonal, 100 * d.backward.max / diagonal,
-               100 * d.mean() / diagonal, d.hausdorff() / (error * diagonal));
+               triangles_of(model.levels, cut), 100 * d.forward.max / diagonal,
+               100 * d.backward.max / diagonal, 100 * d.mean() / diagonal,
+               d.hausdorff() / (error * diagonal));
     std::fflush(stdout);
   }
 }
 
-/// A ball that stays as it is, all else as coarse as it may be.
-void print_focus(const std::string& name, const Leveled& model) {
+/// Which vertices lie in a ball.
+std::vector<char> ball(const Surface& surface, Vec3d center, double radius) {
+  std::vector<char> inside(surface.positions.size());
+  for (std::uint32_t v = 0; v < inside.size(); ++v) inside[v] = length(surface.position(v) - center) < radius;
+  return inside;
+}
+
+/// What a level is off by in a ball that allows a share of the error of the rest, from both sides.
+void print_regions(const std::string& name, const Leveled& model, const Context& context) {
   const Surface original = scene_surface(model.original, rest_pose(model.original)).surface;
-  const Box box = bounds(model.original);
-  for (const double radius : {0.05, 0.1, 0.2}) {
-    for (const double elsewhere : {0.003, 0.01, 0.1}) {
-      std::vector<float> allowed(model.levels.first_vertex.back(), static_cast<float>(elsewhere * box.diagonal()));
-      const Vec3d center = original.position(0);
-      const auto inside = [&](std::uint32_t v) { return length(original.position(v) - center) < radius * box.diagonal(); };
-      for (std::uint32_t v = 0; v < allowed.size(); ++v) {
-        if (inside(v)) allowed[v] = 0;
+  const double diagonal = bounds(model.original).diagonal();
+  const ClosestPoint to_original(original);
+  for (const double elsewhere : {0.003, 0.02}) {
+    for (const double factor : {0.0, 0.05, 0.25}) {
+      const std::vector<char> inside = ball(original, original.position(0), 0.1 * diagonal);
+      std::vector<float> allowed(inside.size());
+      for (std::size_t v = 0; v < allowed.size(); ++v)
+        allowed[v] = static_cast<float>(diagonal * elsewhere * (inside[v] != 0 ? factor : 1));
+      Surface region;
+      region.positions = original.positions;
+      std::vector<char> in_region(original.triangles.size());
+      for (std::size_t f = 0; f < in_region.size(); ++f) {
+        const auto& t = original.triangles[f];
+        in_region[f] = inside[t[0]] != 0 || inside[t[1]] != 0 || inside[t[2]] != 0;
+        if (in_region[f] != 0) region.triangles.push_back(t);
       }
-      std::uint64_t kept = 0;
-      for (const auto& t : original.triangles) kept += inside(t[0]) || inside(t[1]) || inside(t[2]);
-      const Cut cut = cut_within(model.levels, allowed), plain = cut_at_error(model.levels, elsewhere * box.diagonal());
-      fmt::print("| {} | {} | {} | {} | {} | {} |\n", name, radius, elsewhere, kept, triangles_of(model.levels, plain),
-                 triangles_of(model.levels, cut));
+      const Cut cut = cut_within(model.levels, allowed);
+      const Model level = level_of(model.original, model.levels, cut);
+      const Surface made = scene_surface(level, rest_pose(level)).surface;
+      const ClosestPoint to_made(made);
+      double lost = 0, added = 0;
+      for (const Vec3d p : sample_surface(region, kSamples, context.seed))
+        lost = std::max(lost, to_made.nearest(p).distance);
+      for (const Vec3d p : sample_surface(made, kSamples, context.seed)) {
+        const ClosestPoint::Hit hit = to_original.nearest(p);
+        if (in_region[hit.triangle] != 0) added = std::max(added, hit.distance);
+      }
+      fmt::print("| {} | {:.1f} % | {} | {} | {} | {} | {:.4f} % | {:.4f} % | {:.4f} % |\n", name,
+                 100 * elsewhere, factor, region.triangles.size(),
+                 triangles_of(model.levels, cut_at_error(model.levels, elsewhere * diagonal)),
+                 triangles_of(model.levels, cut), 100 * elsewhere * factor, 100 * lost / diagonal,
+                 100 * added / diagonal);
+      std::fflush(stdout);
     }
   }
 }
 
-int run(const std::vector<std::string>& names) {
+/// Directed edges that have no partner, by the points that they join.
+std::size_t count_open_edges(const TriMesh& mesh) {
+  std::size_t open = 0;
+  const std::vector<HalfEdge> half_edges = sorted_half_edges(mesh.triangles);
+  for_each_edge(half_edges, [&](std::span<const HalfEdge> edge) { open += edge.size() == 1; });
+  return open;
+}
+
+/// Random balls, errors and shares: whether every level is a mesh as whole as the original.
+void print_queries(const std::string& name, const Leveled& model, int count) {
+  const Surface original = scene_surface(model.original, rest_pose(model.original)).surface;
+  const double diagonal = bounds(model.original).diagonal();
+  const ClosestPoint to_original(original);
+  std::size_t open_before = 0;
+  for (const Mesh& mesh : model.original.meshes) open_before += count_open_edges(mesh.surface);
+  Random random(11);
+  LiveLevel live(model.original, model.levels);
+  int broken = 0, more_open = 0, doubled = 0;
+  std::uint64_t turned = 0, triangles = 0;
+  double query = 0, jump = 0, slowest_query = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vec3d center =
+        original.position(random.below(static_cast<std::uint32_t>(original.positions.size())));
+    const std::vector<char> inside = ball(original, center, diagonal * random.uniform(0.01, 0.3));
+    const double elsewhere = diagonal * std::pow(10.0, random.uniform(-3.5, -1.5)), factor = random.uniform();
+    std::vector<float> allowed(inside.size());
+    for (std::size_t v = 0; v < allowed.size(); ++v)
+      allowed[v] = static_cast<float>(elsewhere * (inside[v] != 0 ? factor * factor : 1));
+    Cut cut;
+    const double took = seconds([&] { cut = cut_within(model.levels, allowed); });
+    query += took;
+    slowest_query = std::max(slowest_query, took);
+    jump += seconds([&] { live.go_to(cut); });
+    const Model level = level_of(model.original, model.levels, cut);
+    std::size_t open = 0;
+    std::set<std::array<VertexId, 3>> seen;
+    for (const Mesh& mesh : level.meshes) {
+      try {
+        check(mesh.surface);
+      } catch (const Error&) {
+        ++broken;
+      }
+      open += count_open_edges(mesh.surface);
+      seen.clear();
+      for (std::array<VertexId, 3> t : mesh.surface.triangles) {
+        std::sort(t.begin(), t.end());
+        doubled += !seen.insert(t).second;
+      }
+    }
+    more_open += open > open_before;
+    const Surface made = scene_surface(level, rest_pose(level)).surface;
+    triangles += made.triangles.size();
+    for (const auto& t : made.triangles) {
+      const Vec3d a = made.position(t[0]), b = made.position(t[1]), c = made.position(t[2]);
+      const auto& o = original.triangles[to_original.nearest((a + b + c) / 3.0).triangle];
+      const Vec3d before = cross(original.position(o[1]) - original.position(o[0]),
+                                 original.position(o[2]) - original.position(o[0]));
+      turned += dot(normalized(cross(b - a, c - a)), normalized(before)) < -0.5;
+    }
+  }
+  fmt::print("| {} | {} | {} | {} | {} | {:.4f} % | {:.1f} | {:.1f} | {:.1f} |\n", name, count, broken,
+             more_open, doubled, 100 * static_cast<double>(turned) / static_cast<double>(triangles),
+             1e3 * query / count, 1e3 * slowest_query, 1e3 * jump / count);
+}
+
+/// A focus that moves a little from query to query, as an eye does.
+void print_motion(const std::string& name, const Leveled& model) {
+  const Surface original = scene_surface(model.original, rest_pose(model.original)).surface;
+  const double diagonal = bounds(model.original).diagonal();
+  LiveLevel live(model.original, model.levels);
+  constexpr int kSteps = 50;
+  double query = 0, change = 0, slowest = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const Vec3d center = original.position(0) + Vec3d{0.002 * diagonal * i, 0, 0};
+    std::vector<float> allowed(live.cut().empty() ? 0 : model.levels.first_vertex.back());
+    const std::vector<char> inside = ball(original, center, 0.15 * diagonal);
+    for (std::size_t v = 0; v < allowed.size(); ++v)
+      allowed[v] = static_cast<float>(diagonal * 0.01 * (inside[v] != 0 ? 0.02 : 1));
+    Cut cut;
+    const double q = seconds([&] { cut = cut_within(model.levels, allowed); });
+    const double c = seconds([&] { live.go_to(cut); });
+    if (i == 0) continue;
+    query += q;
+    change += c;
+    slowest = std::max(slowest, q + c);
+  }
+  fmt::print("| {} | {} | {} | {:.1f} | {:.1f} | {:.1f} |\n", name, model.levels.triangles,
+             live.triangle_count(), 1e3 * query / kSteps, 1e3 * change / kSteps, 1e3 * slowest);
+}
+
+int run(std::vector<std::string> names) {
+  int queries = 0;
+  if (names.size() > 1 && names[0] == "--queries") {
+    queries = std::stoi(names[1]);
+    names.erase(names.begin(), names.begin() + 2);
+  }
   std::vector<Subject> subjects = speed_subjects();
   std::erase_if(subjects, [&](const Subject& s) {
     return !names.empty() && std::find(names.begin(), names.end(), s.name) == names.end();
@@ -112,8 +245,18 @@ int run(const std::vector<std::string>& names) {
     const Leveled model = make_leveled(subject, context);
     fmt::print("| model | triangles | steps | simplify s | build s | bytes | query ms | read ms | left |\n");
     print_costs(subject.name, model);
-    fmt::print("\n| model | radius | elsewhere | triangles in the ball | without it | left |\n");
-    print_focus(subject.name, model);
+    fmt::print(
+        "\n| model | elsewhere | factor | triangles in the ball | left without it | left | allowed | lost | "
+        "added |\n");
+    print_regions(subject.name, model, context);
+    fmt::print("\n| model | triangles | left | query ms | change ms | slowest, both |\n");
+    print_motion(subject.name, model);
+    if (queries > 0) {
+      fmt::print(
+          "\n| model | queries | broken | more open edges | doubled triangles | turned | query ms | slowest "
+          "| change ms |\n");
+      print_queries(subject.name, model, queries);
+    }
     fmt::print("\n| model | allowed | triangles | lost | added | mean | measured : allowed |\n");
     print_errors(subject.name, model, context);
   }

@@ -143,8 +143,9 @@ void Arguments::parse(const std::vector<std::string>& words, const std::string& 
         const auto add = [&](const std::vector<std::string>& texts) {
           for (const std::string& text : texts) set(option, text);
         };
-        app.add_option_function<std::vector<std::string>>(names, add)->expected(1)->multi_option_policy(
-            CLI::MultiOptionPolicy::TakeAll);
+        app.add_option_function<std::vector<std::string>>(names, add)
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
       } else {
         app.add_option_function<std::string>(names, [&](const std::string& text) { set(option, text); })
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);

@@ -36,16 +36,21 @@ class FocusVerb : public Verb {
   VerbText text() const override {
     return {"focus",
             "keep what somebody looks at, and let the rest go",
-            "Reads a model, a camera and where somebody looks in its picture, and writes the model with full detail "
-            "there and less with the distance from it: all triangles keep to the error that is allowed where they "
+            "Reads a model, a camera and where somebody looks in its picture, and writes the model with full "
+            "detail "
+            "there and less with the distance from it: all triangles keep to the error that is allowed where "
+            "they "
             "are, and fit together without cracks. Or writes how important that makes each vertex, for other "
-            "verbs. Exit code 8 says that more triangles had to stay than were asked for; the output is written all "
+            "verbs. Exit code 8 says that more triangles had to stay than were asked for; the output is "
+            "written all "
             "the same.",
             {{"fovea focus bunny.ply -o head.glb --view 0,10 --at 90,60 --error 0.01",
-              "Within 60 fifths of a pixel of (90, 60) a twentieth of the error of the rest, 1 % of the diagonal."},
+              "Within 60 fifths of a pixel of (90, 60) a twentieth of the error of the rest, 1 % of the "
+              "diagonal."},
              {"fovea focus bunny.ply -o head.glb --at 90,60 --threshold 178 --factor 0 --ratio 0.1",
               "All detail within 178; a tenth of the triangles in all."},
-             {"fovea focus car.glb -o car-look.glb --camera Front --at 120,90 --at 40,100,-1 --law acuity --error 0.02",
+             {"fovea focus car.glb -o car-look.glb --camera Front --at 120,90 --at 40,100,-1 --law acuity "
+              "--error 0.02",
               "As sharp as the eye sees there, and nobody looks at (40, 100)."},
              {"fovea focus car.glb -o door.npy --at 120,130 --on-surface",
               "Importance for \"fovea simplify --importance door.npy\", for views from everywhere."}}};
@@ -53,34 +58,38 @@ class FocusVerb : public Verb {
 
   void declare(Arguments& arguments) override {
     arguments.add(model_argument(input_));
-    arguments.add("Attention",
-                  {{"at",
-                    "Where somebody looks: X,Y in pixels of the picture from its top left, or X,Y,WEIGHT, by which "
-                    "distances from it are divided; with a negative weight nobody looks there. May be given many "
-                    "times.",
-                    &at_, "x,y[,weight]"}});
+    arguments.add(
+        "Attention",
+        {{"at",
+          "Where somebody looks: X,Y in pixels of the picture from its top left, or X,Y,WEIGHT, by which "
+          "distances from it are divided; with a negative weight nobody looks there. May be given many "
+          "times.",
+          &at_, "x,y[,weight]"}});
     arguments.add("Attention", describe(attention_));
     arguments.add("Attention", describe(law_));
-    arguments.add("Camera",
-                  {{"view",
-                    "From where: degrees around the upright axis from the front (+z) to the right, and above the "
-                    "horizon.",
-                    &view_, "azimuth,elevation"},
-                   {"eye", "From where: a position in the scene, instead of --view.", &eye_, "x,y,z"},
-                   {"target", "What --eye looks at; the middle of the model by default.", &target_, "x,y,z"},
-                   {"camera", "The name of one of the model's own cameras, instead of --view.", &camera_, "name"}});
+    arguments.add(
+        "Camera",
+        {{"view",
+          "From where: degrees around the upright axis from the front (+z) to the right, and above the "
+          "horizon.",
+          &view_, "azimuth,elevation"},
+         {"eye", "From where: a position in the scene, instead of --view.", &eye_, "x,y,z"},
+         {"target", "What --eye looks at; the middle of the model by default.", &target_, "x,y,z"},
+         {"camera", "The name of one of the model's own cameras, instead of --view.", &camera_, "name"}});
     const OptionList views = describe(view_options_);
-    arguments.add("Camera", {taken(views, "fov", &view_options_.fov_deg), taken(views, "margin", &view_options_.margin)});
+    arguments.add("Camera", {taken(views, "fov", &view_options_.fov_deg),
+                             taken(views, "margin", &view_options_.margin)});
     arguments.add("Target", targets());
     arguments.add("Target", {{"allow-miss", "Exit with 0 even if more triangles stay than were asked for.",
                               &allow_miss_, ""}});
-    arguments.add("Output",
-                  {describe_output(output_),
-                   {"as",
-                    "What to write: the level, a picture of it from the camera, a heat map of how little error is "
-                    "allowed, the model with the vertex attribute _IMPORTANCE, or a field of it. By itself as the "
-                    "extension says: .png, .jpg and .webp are pictures; .npy, .csv and .txt fields; others levels.",
-                    choice(kind_, {"extension", "level", "picture", "heat", "attribute", "field"}), ""}});
+    arguments.add(
+        "Output",
+        {describe_output(output_),
+         {"as",
+          "What to write: the level, a picture of it from the camera, a heat map of how little error is "
+          "allowed, the model with the vertex attribute _IMPORTANCE, or a field of it. By itself as the "
+          "extension says: .png, .jpg and .webp are pictures; .npy, .csv and .txt fields; others levels.",
+          choice(kind_, {"extension", "level", "picture", "heat", "attribute", "field"}), ""}});
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
     need_format(arguments, write_options_);
@@ -99,9 +108,11 @@ class FocusVerb : public Verb {
     session.report["inputs"] = inputs_json({&input, 1});
     session.report["before"] = to_json(before);
     need_triangles(input);
-    const std::vector<VertexField> shares = session.phase("attention", input_, [&] { return look(input.model, session); });
-    Made made = is_level() ? session.phase("level", input_, [&] { return level(input.model, shares, session); })
-                           : Made{marked(input.model, shares), {}, {}};
+    const std::vector<VertexField> shares =
+        session.phase("attention", input_, [&] { return look(input.model, session); });
+    Made made = is_level()
+                    ? session.phase("level", input_, [&] { return level(input.model, shares, session); })
+                    : Made{marked(input.model, shares), {}, {}};
     session.phase("write", [&] { write(input.model, made, shares, before, session); });
     session.print_summary(summary_ + fmt::format("time     {}\n", session.spent_text()));
     return is_level() ? target_code(session, made.reached, allow_miss_) : 0;
@@ -119,9 +130,10 @@ class FocusVerb : public Verb {
     OptionList list;
     for (const char* name : {"error", "error-abs"}) {
       list.push_back(taken(options, name, name == std::string("error") ? &error_ : &error_abs_));
-      list.back().help = name == std::string("error")
-                             ? "Error that is allowed where nobody looks, as a fraction of the bounding diagonal."
-                             : "The same in scene units.";
+      list.back().help =
+          name == std::string("error")
+              ? "Error that is allowed where nobody looks, as a fraction of the bounding diagonal."
+              : "The same in scene units.";
     }
     list.push_back(taken(options, "ratio", &ratio_));
     list.push_back(taken(options, "triangles", &triangles_));
@@ -147,8 +159,10 @@ class FocusVerb : public Verb {
     }
     const int cameras = !view_.empty() + !eye_.empty() + !camera_.empty();
     if (cameras > 1)
-      throw Error(ErrorKind::usage, "--view, --eye and --camera are three ways to say the same", {}, "give one of them");
-    const int given = ratio_.has_value() + triangles_.has_value() + error_.has_value() + error_abs_.has_value();
+      throw Error(ErrorKind::usage, "--view, --eye and --camera are three ways to say the same", {},
+                  "give one of them");
+    const int given =
+        ratio_.has_value() + triangles_.has_value() + error_.has_value() + error_abs_.has_value();
     if (is_level() && given != 1) {
       throw Error(ErrorKind::usage, given == 0 ? "no target is given" : "there is more than one target", {},
                   "give one of --error, --error-abs, --ratio and --triangles, for example --error 0.01");
@@ -175,19 +189,24 @@ class FocusVerb : public Verb {
         if (view.name == camera_) return view;
         names.push_back(printable(view.name));
       }
-      throw Error(ErrorKind::unsupported, fmt::format("the model has no camera \"{}\"", printable(camera_)), {},
-                  names.empty() ? "it has none; use --view or --eye" : fmt::format("it has {}", fmt::join(names, ", ")));
+      throw Error(ErrorKind::unsupported, fmt::format("the model has no camera \"{}\"", printable(camera_)),
+                  {},
+                  names.empty() ? "it has none; use --view or --eye"
+                                : fmt::format("it has {}", fmt::join(names, ", ")));
     }
     if (!eye_.empty()) {
       const std::vector<double> eye = parse_numbers("eye", eye_, 3, 3);
-      const std::vector<double> target = target_.empty() ? std::vector<double>{sphere.center.x, sphere.center.y, sphere.center.z}
-                                                         : parse_numbers("target", target_, 3, 3);
+      const std::vector<double> target =
+          target_.empty() ? std::vector<double>{sphere.center.x, sphere.center.y, sphere.center.z}
+                          : parse_numbers("target", target_, 3, 3);
       return view_from({eye[0], eye[1], eye[2]}, {target[0], target[1], target[2]}, view_options_.fov_deg);
     }
-    const std::vector<double> angles = view_.empty() ? std::vector<double>{0, 0} : parse_numbers("view", view_, 2, 2);
+    const std::vector<double> angles =
+        view_.empty() ? std::vector<double>{0, 0} : parse_numbers("view", view_, 2, 2);
     const double around = angles[0] * std::numbers::pi / 180, above = angles[1] * std::numbers::pi / 180;
-    return view_onto(sphere, {std::sin(around) * std::cos(above), std::sin(above), std::cos(around) * std::cos(above)},
-                     view_options_.fov_deg, view_options_.margin);
+    return view_onto(
+        sphere, {std::sin(around) * std::cos(above), std::sin(above), std::cos(around) * std::cos(above)},
+        view_options_.fov_deg, view_options_.margin);
   }
 
   /// How much of an error is allowed at each vertex.
@@ -221,12 +240,13 @@ class FocusVerb : public Verb {
     options.metric = Metric::quadric;
     options.placement = Placement::half_edge;  // needs fewer other steps: detail falls off more steeply
     options.triangles = 0;
-    MultiTessellation levels = make_multi_tessellation(
-        model, simplify(model, options, {}, session.context).record, session.context);
+    MultiTessellation levels =
+        make_multi_tessellation(model, simplify(model, options, {}, session.context).record, session.context);
     const double error = error_ ? *error_ * diagonal : error_abs_.value_or(diagonal);
     std::vector<float> allowed;
     for (const VertexField& share : shares) {
-      for (const float x : share.values()) allowed.push_back(static_cast<float>(error * static_cast<double>(x)));
+      for (const float x : share.values())
+        allowed.push_back(static_cast<float>(error * static_cast<double>(x)));
     }
     const std::optional<std::uint64_t> most = most_triangles(levels.triangles);
     double factor = 1;
@@ -234,8 +254,9 @@ class FocusVerb : public Verb {
     const std::uint64_t left = triangles_of(levels, cut);
     Made made{level_of(model, levels, cut), !most || left <= *most, {}};
     const double elsewhere = factor * error;
-    made.result = fmt::format("{}error    {} where nobody looks ({} % of the diagonal), {} of it at the focus\n", attended_,
-                              number_text(elsewhere), number_text(100 * elsewhere / diagonal), number_text(law_.factor));
+    made.result = fmt::format(
+        "{}error    {} where nobody looks ({} % of the diagonal), {} of it at the focus\n", attended_,
+        number_text(elsewhere), number_text(100 * elsewhere / diagonal), number_text(law_.factor));
     session.report["result"] = {{"triangles_target", most ? Json(*most) : Json()},
                                 {"triangles", left},
                                 {"reached", made.reached},
@@ -252,7 +273,8 @@ class FocusVerb : public Verb {
 
   /// What other outputs than levels are made of; fields need no model.
   Model marked(const Model& model, const std::vector<VertexField>& shares) const {
-    if (kind_ == FocusOutput::attribute) return with_attribute(model, finite_importance(shares), "_IMPORTANCE");
+    if (kind_ == FocusOutput::attribute)
+      return with_attribute(model, finite_importance(shares), "_IMPORTANCE");
     if (kind_ != FocusOutput::heat) return {};
     std::vector<VertexField> heat = shares;
     for (VertexField& field : heat) {
@@ -269,11 +291,12 @@ class FocusVerb : public Verb {
     return importance;
   }
 
-  void write(const Model& original, const Made& made, const std::vector<VertexField>& shares, const Snapshot& before,
-             Session& session) {
+  void write(const Model& original, const Made& made, const std::vector<VertexField>& shares,
+             const Snapshot& before, Session& session) {
     summary_ = fmt::format("{} -> {}\n", printable(input_), printable(output_));
     if (kind_ == FocusOutput::field) {
-      write_field(output_, field_in_source_order(original, importance_of(shares)), "importance", write_options_.force);
+      write_field(output_, field_in_source_order(original, importance_of(shares)), "importance",
+                  write_options_.force);
     } else if (kind_ == FocusOutput::picture) {
       write_image(picture(made.model, session.context), output_, write_options_.force);
     } else {
@@ -286,7 +309,9 @@ class FocusVerb : public Verb {
       return;
     }
     session.report["outputs"] = Json::array({file_json(output_)});
-    summary_ += is_level() ? fmt::format("triangles {}\n", count_text(counts(made.model).triangles)) + made.result : attended_;
+    summary_ += is_level()
+                    ? fmt::format("triangles {}\n", count_text(counts(made.model).triangles)) + made.result
+                    : attended_;
   }
 
   Image8 picture(const Model& model, Context& context) const {

@@ -125,8 +125,8 @@ TEST(Cut, TheSameAllowedEverywhereIsOneError) {
     EXPECT_EQ(cut_within(model.levels, everywhere(model.levels, error)), cut_at_error(model.levels, error));
 }
 
-/// The largest closed set whose triangles keep to what is allowed, by its definition: takes out what breaks the
-/// rule until nothing does. Knows each vertex as the set of those that were merged into it.
+/// The largest closed set whose triangles keep to what is allowed, by its definition: takes out what breaks
+/// the rule until nothing does. Knows each vertex as the set of those that were merged into it.
 Cut cut_oracle(const MultiTessellation& levels, const std::vector<float>& allowed) {
   Cut cut(levels.step_count(), 1);
   for (bool changed = true; changed;) {
@@ -138,7 +138,8 @@ Cut cut_oracle(const MultiTessellation& levels, const std::vector<float>& allowe
       bool good = true;
       for (const std::uint32_t n : levels.needs_of(s)) good &= cut[n] != 0;
       const CollapseStep& step = levels.record.steps[s];
-      const std::uint32_t removed = levels.vertex(step.mesh, step.removed), kept = levels.vertex(step.mesh, step.kept);
+      const std::uint32_t removed = levels.vertex(step.mesh, step.removed),
+                          kept = levels.vertex(step.mesh, step.kept);
       merged[kept].insert(merged[removed].begin(), merged[removed].end());
       for (const std::uint32_t v : levels.corners_of(s)) {
         for (const std::uint32_t original : merged[v]) good &= levels.error[s] <= allowed[original];
@@ -206,7 +207,8 @@ TEST(Cut, BudgetsAreMetByOneFactor) {
     EXPECT_LE(triangles_of(model.levels, cut), triangles);
     std::vector<float> scaled = allowed;
     for (float& a : scaled) a *= static_cast<float>(factor * 0.998);
-    EXPECT_GT(triangles_of(model.levels, cut_within(model.levels, scaled)), std::min(triangles, std::uint64_t{2303}))
+    EXPECT_GT(triangles_of(model.levels, cut_within(model.levels, scaled)),
+              std::min(triangles, std::uint64_t{2303}))
         << triangles;
   }
 }

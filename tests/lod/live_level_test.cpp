@@ -29,7 +29,8 @@ TriMesh snapshot(const LiveLevel& live, const TriMesh& source) {
     out.triangles.push_back(mesh.triangles[f]);
     out.face_part.push_back(mesh.face_part[f]);
     for (std::size_t l = 0; l < out.layers.size(); ++l) {
-      for (std::size_t k = 0; k < 3; ++k) out.layers[l].corner_value.push_back(mesh.layers[l].corner_value[3 * f + k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        out.layers[l].corner_value.push_back(mesh.layers[l].corner_value[3 * f + k]);
     }
   }
   return out;

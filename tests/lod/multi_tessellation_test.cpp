@@ -27,7 +27,8 @@ TEST(MultiTessellation, AStepNeedsThoseThatMadeWhatItReplaces) {
   std::set<std::uint32_t> first, second;
   for (const std::uint32_t v : model.levels.corners_of(0)) first.insert(v);
   for (const std::uint32_t v : model.levels.corners_of(1)) second.insert(v);
-  const bool apart = first.count(record.steps[1].removed.value) + first.count(record.steps[1].kept.value) == 0;
+  const bool apart =
+      first.count(record.steps[1].removed.value) + first.count(record.steps[1].kept.value) == 0;
   EXPECT_EQ(model.levels.needs_of(1).empty(), apart);
 }
 
@@ -78,9 +79,11 @@ TEST(MultiTessellation, WhatVanishesCountsWithItsSize) {
   const Leveled model = leveled(test::model_of(test::tetrahedra(4)), 4);
   float largest = 0;
   for (std::size_t s = 0; s < model.levels.step_count(); ++s) {
-    if (model.levels.record.steps[s].kind == StepKind::vanish) largest = std::max(largest, model.levels.error[s]);
+    if (model.levels.record.steps[s].kind == StepKind::vanish)
+      largest = std::max(largest, model.levels.error[s]);
   }
-  EXPECT_GT(largest, 0.25f);  // of the second largest of sizes 1, 1/2, 1/4 and 1/8, which is as large as it is wide
+  EXPECT_GT(largest,
+            0.25f);  // of the second largest of sizes 1, 1/2, 1/4 and 1/8, which is as large as it is wide
 }
 
 TEST(MultiTessellation, IsTheSameForAnyNumberOfThreads) {
@@ -94,7 +97,8 @@ TEST(MultiTessellation, IsTheSameForAnyNumberOfThreads) {
 TEST(MultiTessellation, ForeignRecordsAreRefused) {
   const Leveled model = leveled(test::model_of(test::torus(24, 12)), 100);
   Context context;
-  EXPECT_THROW(make_multi_tessellation(test::model_of(test::grid(4, 4)), model.levels.record, context), Error);
+  EXPECT_THROW(make_multi_tessellation(test::model_of(test::grid(4, 4)), model.levels.record, context),
+               Error);
   CollapseRecord wrong = model.levels.record;
   wrong.steps[3].kept = VertexId{100'000};
   EXPECT_THROW(make_multi_tessellation(model.original, wrong, context), Error);

@@ -46,7 +46,8 @@ TEST(DistanceTransform, IsTheChamferDistance) {
     for (int x = 0; x < 50; ++x) {
       std::int32_t least = std::numeric_limits<std::int32_t>::max();
       for (const GridCell& s : sources) least = std::min(least, chamfer(x - s.x, y - s.y));
-      EXPECT_EQ(distance[static_cast<std::size_t>(y) * 50 + static_cast<std::size_t>(x)], least) << x << " " << y;
+      EXPECT_EQ(distance[static_cast<std::size_t>(y) * 50 + static_cast<std::size_t>(x)], least)
+          << x << " " << y;
     }
   }
 }
@@ -57,7 +58,8 @@ TEST(DistanceTransform, IsNearTheStraightDistance) {
   for (int y = 0; y <= 100; ++y) {
     for (int x = 0; x <= 100; ++x) {
       const double straight = 5 * std::hypot(x - 50, y - 50);
-      EXPECT_NEAR(distance[static_cast<std::size_t>(y) * 101 + static_cast<std::size_t>(x)], straight, 0.021 * straight);
+      EXPECT_NEAR(distance[static_cast<std::size_t>(y) * 101 + static_cast<std::size_t>(x)], straight,
+                  0.021 * straight);
     }
   }
 }
@@ -87,14 +89,16 @@ TEST(Attention, OutsideThePictureItGoesOn) {
   options.view_size = 100;
   const AttentionLabels labels = labels_of(test::model_of(test::grid(1, 1)), view, {{50, 50}}, options);
   // From the middle to the corner of the picture 50 cells across corners, and as far again: 50 √2 cells.
-  for (const float label : labels.attended[0].values()) EXPECT_NEAR(label, 7 * 50 + 5 * 50 * std::sqrt(2.0), 10);
+  for (const float label : labels.attended[0].values())
+    EXPECT_NEAR(label, 7 * 50 + 5 * 50 * std::sqrt(2.0), 10);
 }
 
 TEST(Attention, NearestFocusCountsByItsWeight) {
   const TriMesh mesh = test::grid(10, 1);
   AttentionOptions options;
   options.view_size = 100;
-  const AttentionLabels labels = labels_of(test::model_of(mesh), from_above(), {{0, 99}, {99, 99, 3}, {50, 99, -2}}, options);
+  const AttentionLabels labels =
+      labels_of(test::model_of(mesh), from_above(), {{0, 99}, {99, 99, 3}, {50, 99, -2}}, options);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     if (mesh.positions[v].y > 0) continue;
     const double x = 100 * static_cast<double>(mesh.positions[v].x);
@@ -163,11 +167,13 @@ TEST(Attention, OnTheSurfaceOtherPiecesAreReachedStraight) {
   options.view_size = 100;  // a fifth of a pixel is 0.002
   const AttentionLabels labels = labels_of(model, from_above(), {{50, 49}}, options, 200);
   for (std::size_t v = 0; v < above.vertex_count(); ++v) {
-    const double along = std::hypot(static_cast<double>(above.positions[v].x) - 0.505, static_cast<double>(above.positions[v].y) - 0.505);
+    const double along = std::hypot(static_cast<double>(above.positions[v].x) - 0.505,
+                                    static_cast<double>(above.positions[v].y) - 0.505);
     const auto expect = [&](std::size_t mesh, double distance) {
       const float label = labels.attended[mesh].values()[v];
       if (distance < 0.4) {
-        EXPECT_NEAR(label, distance / 0.002, 8) << v;  // ways begin at a corner of the triangle under the focus
+        EXPECT_NEAR(label, distance / 0.002, 8)
+            << v;  // ways begin at a corner of the triangle under the focus
       } else {
         EXPECT_EQ(label, kNone) << v;
       }
@@ -215,7 +221,8 @@ TEST(AttentionLaw, LinearGoesFromOneToTheOther) {
   const AttentionLabels labels = labels_with({0, 50, 100, 500, kNone}, {kNone, kNone, kNone, kNone, 50});
   const std::vector<VertexField> shares = allowed_shares(labels, from_above(), 100, options);
   const std::vector<float> expected{0.2f, 0.6f, 1, 1, 2};
-  for (std::size_t v = 0; v < expected.size(); ++v) EXPECT_NEAR(shares[0].values()[v], expected[v], 1e-6) << v;
+  for (std::size_t v = 0; v < expected.size(); ++v)
+    EXPECT_NEAR(shares[0].values()[v], expected[v], 1e-6) << v;
 }
 
 TEST(AttentionLaw, AcuityHalvesEveryTwoAndAHalfDegrees) {
@@ -224,12 +231,15 @@ TEST(AttentionLaw, AcuityHalvesEveryTwoAndAHalfDegrees) {
   options.factor = 0.1;
   options.viewing_distance = 2;
   // In a picture 100 pixels high seen from two heights a label of 5 · 200 · tan(a) is at the angle a.
-  const auto label = [](double degrees) { return static_cast<float>(1000 * std::tan(degrees * 3.14159265358979 / 180)); };
+  const auto label = [](double degrees) {
+    return static_cast<float>(1000 * std::tan(degrees * 3.14159265358979 / 180));
+  };
   const AttentionLabels labels =
       labels_with({0, label(2.5), label(5), label(22.5), label(60)}, {kNone, kNone, kNone, kNone, kNone});
   const std::vector<VertexField> shares = allowed_shares(labels, from_above(), 100, options);
   const std::vector<float> expected{0.1f, 0.2f, 0.3f, 1, 1};
-  for (std::size_t v = 0; v < expected.size(); ++v) EXPECT_NEAR(shares[0].values()[v], expected[v], 1e-5) << v;
+  for (std::size_t v = 0; v < expected.size(); ++v)
+    EXPECT_NEAR(shares[0].values()[v], expected[v], 1e-5) << v;
   EXPECT_NEAR(attention_reach(options, from_above(), 100), label(22.5), 1e-2);
 }
 

@@ -66,41 +66,42 @@ std::string Option::range_text() const {
 }
 
 std::string Option::value_text() const {
-  return std::visit(Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
-                               [](const std::string* v) { return *v; },
-                               [](const std::vector<std::string>* v) { return fmt::format("{}", fmt::join(*v, " ")); },
-                               [](const Choice& c) { return c.names.at(static_cast<std::size_t>(c.get())); },
-                               [](const auto* v) {
-                                 if constexpr (requires { v->has_value(); }) {
-                                   return v->has_value() ? fmt::format("{}", **v) : std::string("none");
-                                 } else {
-                                   return fmt::format("{}", *v);
-                                 }
-                               }},
-                    value);
+  return std::visit(
+      Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
+                 [](const std::string* v) { return *v; },
+                 [](const std::vector<std::string>* v) { return fmt::format("{}", fmt::join(*v, " ")); },
+                 [](const Choice& c) { return c.names.at(static_cast<std::size_t>(c.get())); },
+                 [](const auto* v) {
+                   if constexpr (requires { v->has_value(); }) {
+                     return v->has_value() ? fmt::format("{}", **v) : std::string("none");
+                   } else {
+                     return fmt::format("{}", *v);
+                   }
+                 }},
+      value);
 }
 
 void Option::parse(const std::string& text) {
-  std::visit(Overloaded{[&](bool* v) {
-                          if (text != "true" && text != "false") bad_value(*this, text);
-                          *v = text == "true";
-                        },
-                        [&](std::string* v) { *v = text; },
-                        [&](std::vector<std::string>* v) { v->push_back(text); },
-                        [&](Choice& c) {
-                          const auto at = std::find(c.names.begin(), c.names.end(), text);
-                          if (at == c.names.end()) bad_value(*this, text);
-                          c.set(static_cast<int>(at - c.names.begin()));
-                        },
-                        [&](auto* v) {
-                          using T = std::decay_t<decltype(*v)>;
-                          if constexpr (requires { typename T::value_type; }) {
-                            *v = parse_number<typename T::value_type>(*this, text);
-                          } else {
-                            *v = parse_number<T>(*this, text);
-                          }
-                        }},
-             value);
+  std::visit(
+      Overloaded{[&](bool* v) {
+                   if (text != "true" && text != "false") bad_value(*this, text);
+                   *v = text == "true";
+                 },
+                 [&](std::string* v) { *v = text; }, [&](std::vector<std::string>* v) { v->push_back(text); },
+                 [&](Choice& c) {
+                   const auto at = std::find(c.names.begin(), c.names.end(), text);
+                   if (at == c.names.end()) bad_value(*this, text);
+                   c.set(static_cast<int>(at - c.names.begin()));
+                 },
+                 [&](auto* v) {
+                   using T = std::decay_t<decltype(*v)>;
+                   if constexpr (requires { typename T::value_type; }) {
+                     *v = parse_number<typename T::value_type>(*this, text);
+                   } else {
+                     *v = parse_number<T>(*this, text);
+                   }
+                 }},
+      value);
   check();
 }
 

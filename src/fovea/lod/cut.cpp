@@ -38,7 +38,8 @@ Cut take_within(const MultiTessellation& levels, std::span<const float> allowed,
     const CollapseStep& step = levels.record.steps[s];
     float least = std::numeric_limits<float>::infinity();
     for (const std::uint32_t v : levels.corners_of(s)) least = std::min(least, at_vertex[v]);
-    if (step.kind == StepKind::collapse) least = std::min(least, at_vertex[levels.vertex(step.mesh, step.removed)]);
+    if (step.kind == StepKind::collapse)
+      least = std::min(least, at_vertex[levels.vertex(step.mesh, step.removed)]);
     if (levels.error[s] > factor * least) return false;
     if (step.kind == StepKind::collapse) {
       float& kept = at_vertex[levels.vertex(step.mesh, step.kept)];

@@ -31,7 +31,8 @@ class LiveLevel::Recorder {
     const CollapseStep& step = record_.steps[s];
     const TriMesh& mesh = level_.meshes_[step.mesh];
     level_.numbers_begin_.push_back(level_.numbers_before_.size());
-    level_.position_before_.push_back(step.kind == StepKind::collapse ? mesh.positions[step.kept.index()] : Vec3f());
+    level_.position_before_.push_back(step.kind == StepKind::collapse ? mesh.positions[step.kept.index()]
+                                                                      : Vec3f());
     if (step.kind == StepKind::collapse) note_corners(s);
     level_.changes_end_.push_back(static_cast<std::uint32_t>(level_.changes_.size()));
     for (std::size_t i = s > 0 ? record_.steps[s - 1].writes_end : 0; i < step.writes_end; ++i)
@@ -46,7 +47,8 @@ class LiveLevel::Recorder {
     const auto is_gone = [&](std::uint32_t c) { return level_.there_[step.mesh][c / 3] == 0; };
     std::erase_if(at_removed, is_gone);
     std::erase_if(at_kept, is_gone);
-    for (const std::uint32_t c : at_removed) level_.changes_.push_back({kInvalid, c, step.removed.value, step.kept.value});
+    for (const std::uint32_t c : at_removed)
+      level_.changes_.push_back({kInvalid, c, step.removed.value, step.kept.value});
     at_kept.insert(at_kept.end(), at_removed.begin(), at_removed.end());
     at_removed = {};
     const TriMesh& mesh = level_.meshes_[step.mesh];
@@ -123,7 +125,8 @@ void LiveLevel::change(std::size_t s, bool taken) {
     }
   }
   const std::size_t first_face = s > 0 ? record.steps[s - 1].faces_end : 0;
-  for (std::size_t i = first_face; i < step.faces_end; ++i) there_[step.mesh][record.removed_faces[i].index()] = !taken;
+  for (std::size_t i = first_face; i < step.faces_end; ++i)
+    there_[step.mesh][record.removed_faces[i].index()] = !taken;
   const std::uint64_t faces = step.faces_end - first_face;
   triangle_count_ = taken ? triangle_count_ - faces : triangle_count_ + faces;
   if (step.moved) mesh.positions[step.kept.index()] = taken ? step.position : position_before_[s];

@@ -9,12 +9,12 @@
 
 namespace fovea {
 
-/// A level that goes from cut to cut: for programs that ask again and again, as the eye or the camera moves. Takes
-/// or undoes only the steps in which two cuts differ.
+/// A level that goes from cut to cut: for programs that ask again and again, as the eye or the camera moves.
+/// Takes or undoes only the steps in which two cuts differ.
 class LiveLevel {
  public:
-  /// Begins with the original. Both must outlive this. O(#F · #layers); copies the meshes, and takes about 100 bytes
-  /// more for each step.
+  /// Begins with the original. Both must outlive this. O(#F · #layers); copies the meshes, and takes about
+  /// 100 bytes more for each step.
   LiveLevel(const Model& original, const MultiTessellation& levels);
 
   /// The cut must be closed, as all are that lod/cut.h makes. O(#steps), and the one-rings of what differs.
@@ -22,9 +22,9 @@ class LiveLevel {
   const Cut& cut() const { return cut_; }
   std::uint64_t triangle_count() const { return triangle_count_; }
 
-  /// A mesh of the level: corners, positions and values of the triangles that are there; the others, and what only
-  /// they use, mean nothing. Triangles, vertices and values keep the numbers of the original, so that buffers of a
-  /// graphics card can be changed in place.
+  /// A mesh of the level: corners, positions and values of the triangles that are there; the others, and what
+  /// only they use, mean nothing. Triangles, vertices and values keep the numbers of the original, so that
+  /// buffers of a graphics card can be changed in place.
   const TriMesh& mesh(std::size_t m) const { return meshes_[m]; }
   bool is_there(std::size_t m, FaceId f) const { return there_[m][f.index()] != 0; }
 

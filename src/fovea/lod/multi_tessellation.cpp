@@ -48,7 +48,8 @@ void check_step(const Model& original, const CollapseRecord& record, std::size_t
     }
     for (std::size_t i = before.writes_end; i < step.writes_end; ++i) {
       const ValueWrite& write = record.writes[i];
-      good = good && (write.layer == kInvalid ? write.value < mesh.vertex_count() : has_value(write.layer, write.value));
+      good = good && (write.layer == kInvalid ? write.value < mesh.vertex_count()
+                                              : has_value(write.layer, write.value));
     }
   }
   if (!good) throw Error(ErrorKind::usage, "the record is of another model", fmt::format("step {}", s));
@@ -119,12 +120,13 @@ class Builder {
   std::vector<std::uint32_t> first_face_;  // [#meshes + 1]
 
   // Of all meshes, as the steps have left them:
-  std::vector<Vec3f> positions_;                        // [#V], in the space of their mesh
-  std::vector<std::array<std::uint32_t, 3>> faces_;     // [#F]
-  std::vector<char> alive_;                             // [#F]
+  std::vector<Vec3f> positions_;                                         // [#V], in the space of their mesh
+  std::vector<std::array<std::uint32_t, 3>> faces_;                      // [#F]
+  std::vector<char> alive_;                                              // [#F]
   std::vector<std::uint32_t> first_corner_, last_corner_, next_corner_;  // [#V], [#V], [#F × 3]
-  std::vector<std::uint32_t> merged_into_;                // [#V], itself if it is left
-  std::vector<std::vector<std::vector<std::uint32_t>>> home_;  // [#meshes][#layers][#values], its original vertex
+  std::vector<std::uint32_t> merged_into_;                               // [#V], itself if it is left
+  std::vector<std::vector<std::vector<std::uint32_t>>>
+      home_;                                // [#meshes][#layers][#values], its original vertex
   std::vector<std::uint32_t> made_by_;      // [#F], the step that made the face as it is
   std::vector<std::uint32_t> stripped_by_;  // [#V], the last step that removed a face there
   // Points of the original, its vertices and the middles of its edges, and those that each face stands for.
@@ -163,7 +165,8 @@ void Builder::number_elements() {
   std::uint64_t corners = 0;
   for (const Mesh& mesh : original_.meshes) {
     corners += 3 * mesh.surface.face_count();
-    if (corners >= kInvalid) throw Error(ErrorKind::limit, "the model has too many triangles for a record of levels");
+    if (corners >= kInvalid)
+      throw Error(ErrorKind::limit, "the model has too many triangles for a record of levels");
     levels_.first_vertex.push_back(levels_.first_vertex.back() +
                                    static_cast<std::uint32_t>(mesh.surface.vertex_count()));
     first_face_.push_back(first_face_.back() + static_cast<std::uint32_t>(mesh.surface.face_count()));
@@ -243,7 +246,8 @@ void Builder::run(Context& context) {
   const CollapseRecord& record = levels_.record;
   if (record.triangles_before != levels_.triangles)
     throw Error(ErrorKind::usage, "the record is of another model", "record",
-                fmt::format("it begins with {} triangles, the model has {}", record.triangles_before, levels_.triangles));
+                fmt::format("it begins with {} triangles, the model has {}", record.triangles_before,
+                            levels_.triangles));
   const std::size_t count = record.steps.size();
   levels_.needs_end.reserve(count);
   levels_.corners_end.reserve(count);
@@ -380,7 +384,8 @@ void Builder::note_corners(std::uint32_t b) {
   levels_.corners_end.push_back(static_cast<std::uint32_t>(levels_.corners.size()));
 }
 
-/// Gives the points that the old faces stood for to the nearest of the new ones. Returns the largest distance.
+/// Gives the points that the old faces stood for to the nearest of the new ones. Returns the largest
+/// distance.
 double Builder::keep_points() {
   points_.clear();
   for (const std::uint32_t f : old_faces_) {
@@ -460,7 +465,8 @@ void Builder::finish_errors() {
 std::size_t MultiTessellation::bytes() const {
   const auto size = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
   return size(record.steps) + size(record.removed_faces) + size(record.joins) + size(record.writes) +
-         size(record.floats) + size(needs_end) + size(needs) + size(corners_end) + size(corners) + size(error);
+         size(record.floats) + size(needs_end) + size(needs) + size(corners_end) + size(corners) +
+         size(error);
 }
 
 MultiTessellation make_multi_tessellation(const Model& original, CollapseRecord record, Context& context) {

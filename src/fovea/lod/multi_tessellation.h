@@ -11,12 +11,13 @@
 
 namespace fovea {
 
-/// The steps of a simplification as a partial order (Multi-Tessellation: De Floriani, Magillo and Puppo 1998).
+/// The steps of a simplification as a partial order (Multi-Tessellation: De Floriani, Magillo and Puppo
+/// 1998).
 ///
 /// A step replaces the triangles around an edge by those around a vertex. It needs the steps before it that
-/// made one of the triangles it replaces, and no others. Any set of steps that holds all that its members need
-/// gives a mesh without cracks, in which each triangle is as it was at some time of the simplification: so
-/// some places can be coarse and others fine (lod/cut.h).
+/// made one of the triangles it replaces, and no others. Any set of steps that holds all that its members
+/// need gives a mesh without cracks, in which each triangle is as it was at some time of the simplification:
+/// so some places can be coarse and others fine (lod/cut.h).
 ///
 /// Vertices are numbered through over all meshes of the model, see `first_vertex`.
 struct MultiTessellation {
@@ -57,11 +58,11 @@ struct MultiTessellation {
 /// Of the record with which `original` was simplified.
 ///
 /// Errors are measured both ways, for the rest pose. From the original: its vertices and the middles of its
-/// edges are kept with the triangle that stands for them, and look for the nearest of the new ones when a step
-/// replaces that. To the original: three points of each new edge, the middle of each new triangle, and the
-/// vertex between them look for the nearest point of the whole mesh. A quarter is added for what lies between
-/// the points. What vanishes altogether counts with its diameter. Lengths are those of the largest instance of
-/// a mesh.
+/// edges are kept with the triangle that stands for them, and look for the nearest of the new ones when a
+/// step replaces that. To the original: three points of each new edge, the middle of each new triangle, and
+/// the vertex between them look for the nearest point of the whole mesh. A quarter is added for what lies
+/// between the points. What vanishes altogether counts with its diameter. Lengths are those of the largest
+/// instance of a mesh.
 ///
 /// O(#F log #F), some 20 µs for each triangle, partly parallel. Throws Error(usage) if the record is of
 /// another model, Error(cancelled).

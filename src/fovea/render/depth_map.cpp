@@ -37,7 +37,8 @@ bool DepthMap::shows(Vec3d p) const {
   const PicturePoint point = picture_point(view_, size_, p);
   if (view_.perspective && point.distance <= 0) return false;
   const auto cell = [&](double x) { return static_cast<int>(std::clamp(std::floor(x), 0.0, size_ - 1.0)); };
-  return point.distance <= depth_[at(cell(point.x), cell(point.y))] + pixel_width(view_, size_, point.distance);
+  return point.distance <=
+         depth_[at(cell(point.x), cell(point.y))] + pixel_width(view_, size_, point.distance);
 }
 
 }  // namespace fovea

@@ -14,7 +14,8 @@ namespace fovea {
 /// Where a view sees a point of space: pixels from the top left of a square picture.
 struct PicturePoint {
   double x = 0, y = 0;
-  double distance = 0;  ///< In front of the eye's plane; in perspective nothing is seen where it is not positive.
+  double distance =
+      0;  ///< In front of the eye's plane; in perspective nothing is seen where it is not positive.
 };
 PicturePoint picture_point(const View& view, int size, Vec3d p);
 /// The width of a pixel in a plane at that distance, in units of the scene.

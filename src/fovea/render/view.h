@@ -56,8 +56,8 @@ std::vector<View> make_views(const ViewOptions& options, const Sphere& sphere);
 /// An upright view along `-direction` (unit) onto the sphere.
 View view_onto(const Sphere& sphere, Vec3d direction, double fov_deg, double margin);
 
-/// An upright view from a point onto another; they must differ. Parallel (fov_deg 0) it is as high as the points
-/// are apart.
+/// An upright view from a point onto another; they must differ. Parallel (fov_deg 0) it is as high as the
+/// points are apart.
 View view_from(Vec3d eye, Vec3d target, double fov_deg);
 
 }  // namespace fovea

@@ -33,7 +33,8 @@ void check(std::span<const Focus> foci, int size) {
   for (const Focus& focus : foci) {
     if (!(focus.x >= 0 && focus.x < size && focus.y >= 0 && focus.y < size)) {
       throw Error(ErrorKind::usage,
-                  fmt::format("the focus {}, {} is not in the picture of {} × {} pixels", focus.x, focus.y, size, size),
+                  fmt::format("the focus {}, {} is not in the picture of {} × {} pixels", focus.x, focus.y,
+                              size, size),
                   "foci");
     }
     if (!std::isfinite(focus.weight) || focus.weight == 0)
@@ -62,8 +63,13 @@ std::vector<float> label_cells(const Foci& foci, int size) {
 /// Puts the labels of the picture's cells back on what projects there.
 class BackProjection {
  public:
-  BackProjection(const RenderScene& scene, const View& view, const AttentionOptions& options, const Context& context)
-      : scene_(scene), view_(view), options_(options), size_(static_cast<int>(options.view_size)), context_(context) {}
+  BackProjection(const RenderScene& scene, const View& view, const AttentionOptions& options,
+                 const Context& context)
+      : scene_(scene),
+        view_(view),
+        options_(options),
+        size_(static_cast<int>(options.view_size)),
+        context_(context) {}
 
   void add(const std::vector<float>& cells, std::vector<VertexField>& labels) {
     if (options_.element == AttentionElement::vertices) {
@@ -79,14 +85,17 @@ class BackProjection {
   /// The label of a point of the picture; outside it goes on from the border.
   float label_at(const std::vector<float>& cells, const PicturePoint& p) const {
     const double x = std::clamp(p.x, 0.0, size_ - 0.5), y = std::clamp(p.y, 0.0, size_ - 0.5);
-    const double outside = std::hypot(p.x - std::clamp(p.x, 0.0, 1.0 * size_), p.y - std::clamp(p.y, 0.0, 1.0 * size_));
-    return cells[index(static_cast<int>(x), static_cast<int>(y))] + static_cast<float>(kChamferEdge * outside);
+    const double outside =
+        std::hypot(p.x - std::clamp(p.x, 0.0, 1.0 * size_), p.y - std::clamp(p.y, 0.0, 1.0 * size_));
+    return cells[index(static_cast<int>(x), static_cast<int>(y))] +
+           static_cast<float>(kChamferEdge * outside);
   }
   bool is_inside(const PicturePoint& p) const { return p.x >= 0 && p.x < size_ && p.y >= 0 && p.y < size_; }
 
   void label_vertices(const SceneMesh& mesh, const std::vector<float>& cells, VertexField& labels) {
     if (options_.visible_only && !depth_) depth_.emplace(scene_, view_, size_, context_);
-    const std::vector<char> faces_eye = options_.visible_only ? vertices_that_face_the_eye(mesh) : std::vector<char>{};
+    const std::vector<char> faces_eye =
+        options_.visible_only ? vertices_that_face_the_eye(mesh) : std::vector<char>{};
     parallel_for(context_, labels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const Vec3d p(mesh.surface.positions[v]);
@@ -129,9 +138,10 @@ class BackProjection {
       }
       const std::vector<ScreenVertex> fan = projection.clip(eye);
       for (std::size_t k = 2; k < fan.size(); ++k) {
-        for_spans({fan[0], fan[k - 1], fan[k]}, {0, 0, size_, size_}, [&](int y, int x0, int x1, const NearnessPlane&) {
-          for (int x = x0; x < x1; ++x) label = std::min(label, cells[index(x, y)]);
-        });
+        for_spans({fan[0], fan[k - 1], fan[k]}, {0, 0, size_, size_},
+                  [&](int y, int x0, int x1, const NearnessPlane&) {
+                    for (int x = x0; x < x1; ++x) label = std::min(label, cells[index(x, y)]);
+                  });
       }
       for (const VertexId v : mesh.mesh->triangles[f]) labels[v] = std::min(labels[v], label);
     }
@@ -186,15 +196,16 @@ class SurfaceDistances {
     const std::size_t pixel =
         static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(cell.x);
     if (visible_.triangle[pixel] == kInvalid) {
-      throw Error(ErrorKind::usage, fmt::format("the picture shows no surface at {}, {}", focus.x, focus.y), "foci");
+      throw Error(ErrorKind::usage, fmt::format("the picture shows no surface at {}, {}", focus.x, focus.y),
+                  "foci");
     }
     const TriangleOrigin from = origin(scene_, visible_.triangle[pixel]);
     const std::uint32_t mesh = scene_.meshes[from.mesh].mesh_index;
     const auto& corners = whole_.surface.triangles[whole_.first_triangle[mesh] + from.face.value];
     const Vec3d point = point_under(focus, from, corners);
     // A fifth of a pixel's width where the point is.
-    const double unit = pixel_width(view_, size_, static_cast<double>(visible_.distance[pixel])) / kChamferEdge *
-                        std::abs(focus.weight);
+    const double unit = pixel_width(view_, size_, static_cast<double>(visible_.distance[pixel])) /
+                        kChamferEdge * std::abs(focus.weight);
     std::vector<char> is_joined(labels.size(), 0);
     for (const std::uint32_t corner : corners) {
       const double before = length(whole_.surface.position(corner) - point);
@@ -215,7 +226,8 @@ class SurfaceDistances {
 
  private:
   /// Where the ray through the focus meets the triangle, on the surface at rest.
-  Vec3d point_under(const Focus& focus, const TriangleOrigin& from, const std::array<std::uint32_t, 3>& corners) const {
+  Vec3d point_under(const Focus& focus, const TriangleOrigin& from,
+                    const std::array<std::uint32_t, 3>& corners) const {
     const SceneMesh& mesh = scene_.meshes[from.mesh];
     std::array<Vec2d, 3> p;
     std::array<double, 3> nearness{};
@@ -272,15 +284,18 @@ class SurfaceDistances {
 
 OptionList describe(AttentionOptions& o) {
   return {{"labels",
-           "What is labelled: vertices where they project, or triangles over all that they cover, so that large ones "
+           "What is labelled: vertices where they project, or triangles over all that they cover, so that "
+           "large ones "
            "are found between their corners.",
            choice(o.element, {"vertices", "faces"}), ""},
-          {"visible-only", "Label only what the picture shows, not what is hidden behind it.", &o.visible_only, ""},
+          {"visible-only", "Label only what the picture shows, not what is hidden behind it.",
+           &o.visible_only, ""},
           {"on-surface",
-           "Measure from the points of the surface under the foci, over the surface, so that it holds for all views.",
+           "Measure from the points of the surface under the foci, over the surface, so that it holds for "
+           "all views.",
            &o.on_surface, ""},
-          {"view-size", "Width and height of the picture in which --at counts pixels.", &o.view_size, "pixels", 16,
-           4096}};
+          {"view-size", "Width and height of the picture in which --at counts pixels.", &o.view_size,
+           "pixels", 16, 4096}};
 }
 
 AttentionLabels attention_labels(const Model& model, const RenderScene& scene, const View& view,

@@ -22,7 +22,7 @@ struct Focus {
 /// What of a mesh is found in a cell of the picture.
 enum class AttentionElement {
   vertices,  ///< Vertices; what projects outside goes on from the border.
-  faces,     ///< Triangles over all cells that they cover, so that large ones are found between their corners.
+  faces,  ///< Triangles over all cells that they cover, so that large ones are found between their corners.
 };
 
 struct AttentionOptions {
@@ -41,17 +41,17 @@ struct AttentionLabels {
   std::vector<VertexField> neglected;  ///< and from the nearest focus of neglect.
 };
 
-/// Labels a model by how far each vertex is from where somebody looks (Mata et al. 2006, paper 004): the chamfer
-/// 5-7-11 distance transform of the picture, back on what projects into each cell. Distances from a focus are
-/// divided by its weight; the smallest counts.
+/// Labels a model by how far each vertex is from where somebody looks (Mata et al. 2006, paper 004): the
+/// chamfer 5-7-11 distance transform of the picture, back on what projects into each cell. Distances from a
+/// focus are divided by its weight; the smallest counts.
 ///
-/// On the surface (the paper's future work: for all views at once) distances are exact geodesics from the point
-/// under the pixel, as if seen at the size that it has there, up to `reach`; to parts that no triangles join to
-/// it, straight ones.
+/// On the surface (the paper's future work: for all views at once) distances are exact geodesics from the
+/// point under the pixel, as if seen at the size that it has there, up to `reach`; to parts that no triangles
+/// join to it, straight ones.
 ///
-/// `scene` is of the model, posed as it is seen; labels of surfaces are of the rest pose. O(#V + #pixels · #foci),
-/// on the surface the cost of GeodesicSearch. Throws Error(usage) for foci outside the picture, or without
-/// surface under them if they are to be on it.
+/// `scene` is of the model, posed as it is seen; labels of surfaces are of the rest pose. O(#V + #pixels ·
+/// #foci), on the surface the cost of GeodesicSearch. Throws Error(usage) for foci outside the picture, or
+/// without surface under them if they are to be on it.
 AttentionLabels attention_labels(const Model& model, const RenderScene& scene, const View& view,
                                  std::span<const Focus> foci, const AttentionOptions& options, double reach,
                                  const Context& context);

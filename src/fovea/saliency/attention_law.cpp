@@ -38,18 +38,20 @@ void check_law(const AttentionLawOptions& options, const View& view) {
 }  // namespace
 
 OptionList describe(AttentionLawOptions& o) {
-  return {{"law", "How the allowed error grows with the distance from a focus: all at once beyond a threshold, linearly "
-           "up to it, or as the eye's acuity falls.",
-           choice(o.law, {"threshold", "linear", "acuity"}), ""},
-          {"threshold", "How far a focus reaches, in fifths of a pixel of the picture.", &o.threshold, "fifths of a pixel",
-           1e-3, 1e9},
-          {"factor", "Share of the error that is allowed at a focus; 0 keeps its surroundings as they are.", &o.factor, "",
-           0, 1},
-          {"neglect", "How much more error is allowed at a focus of neglect, one with a negative weight.", &o.neglect,
-           "times", 1, 1e6},
-          {"viewing-distance",
-           "From how far the picture is seen, for acuity; 0: so that it fills the camera's angle of view.",
-           &o.viewing_distance, "picture heights", 0, 1000}};
+  return {
+      {"law",
+       "How the allowed error grows with the distance from a focus: all at once beyond a threshold, linearly "
+       "up to it, or as the eye's acuity falls.",
+       choice(o.law, {"threshold", "linear", "acuity"}), ""},
+      {"threshold", "How far a focus reaches, in fifths of a pixel of the picture.", &o.threshold,
+       "fifths of a pixel", 1e-3, 1e9},
+      {"factor", "Share of the error that is allowed at a focus; 0 keeps its surroundings as they are.",
+       &o.factor, "", 0, 1},
+      {"neglect", "How much more error is allowed at a focus of neglect, one with a negative weight.",
+       &o.neglect, "times", 1, 1e6},
+      {"viewing-distance",
+       "From how far the picture is seen, for acuity; 0: so that it fills the camera's angle of view.",
+       &o.viewing_distance, "picture heights", 0, 1000}};
 }
 
 double attention_reach(const AttentionLawOptions& options, const View& view, int view_size) {
@@ -86,7 +88,8 @@ std::vector<VertexField> allowed_shares(const AttentionLabels& labels, const Vie
     for (std::size_t v = 0; v < share.size(); ++v) {
       const double near = static_cast<double>(labels.attended[m].values()[v]);
       const double off = static_cast<double>(labels.neglected[m].values()[v]);
-      share.values()[v] = static_cast<float>(off < near && off < options.threshold ? neglected(off) : at_focus(near));
+      share.values()[v] =
+          static_cast<float>(off < near && off < options.threshold ? neglected(off) : at_focus(near));
     }
   }
   return shares;

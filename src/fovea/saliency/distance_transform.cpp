@@ -25,9 +25,11 @@ constexpr std::array<Step, 8> kBefore{{{-1, 0, kChamferEdge},
 }  // namespace
 
 std::vector<std::int32_t> distance_transform(int width, int height, std::span<const GridCell> sources) {
-  std::vector<std::int32_t> distance(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kFar);
+  std::vector<std::int32_t> distance(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                                     kFar);
   const auto at = [&](int x, int y) -> std::int32_t& {
-    return distance[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    return distance[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(x)];
   };
   for (const GridCell& source : sources) at(source.x, source.y) = 0;
   const auto relax = [&](int x, int y, int way) {

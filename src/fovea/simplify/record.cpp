@@ -36,7 +36,9 @@ class Replayed {
     const AttributeLayer& layer = mesh_.layers[write.layer];
     return static_cast<std::size_t>(layer.width) * (1 + layer.morphs.size());
   }
-  const float* write(const ValueWrite& write, const float* numbers) { return write_numbers(mesh_, write, numbers); }
+  const float* write(const ValueWrite& write, const float* numbers) {
+    return write_numbers(mesh_, write, numbers);
+  }
   TriMesh finish();
 
  private:
