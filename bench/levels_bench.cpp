@@ -22,9 +22,9 @@
 #include "fovea/lod/multi_tessellation.h"
 #include "fovea/simplify/simplify.h"
 #include "fovea/surface/closest_point.h"
-#include "fovea/surface/half_edges.h"
 #include "fovea/surface/pose.h"
 #include "fovea/surface/scene_surface.h"
+#include "fovea/surface/topology.h"
 #include "subjects.h"
 
 namespace fovea::bench {
@@ -139,21 +139,13 @@ void print_regions(const std::string& name, const Leveled& model, const Context&
   }
 }
 
-/// Directed edges that have no partner, by the points that they join.
-std::size_t count_open_edges(const TriMesh& mesh) {
-  std::size_t open = 0;
-  const std::vector<HalfEdge> half_edges = sorted_half_edges(mesh.triangles);
-  for_each_edge(half_edges, [&](std::span<const HalfEdge> edge) { open += edge.size() == 1; });
-  return open;
-}
-
 /// Random balls, errors and shares: whether every level is a mesh as whole as the original.
 void print_queries(const std::string& name, const Leveled& model, int count) {
   const Surface original = scene_surface(model.original, rest_pose(model.original)).surface;
   const double diagonal = bounds(model.original).diagonal();
   const ClosestPoint to_original(original);
   std::size_t open_before = 0;
-  for (const Mesh& mesh : model.original.meshes) open_before += count_open_edges(mesh.surface);
+  for (const Mesh& mesh : model.original.meshes) open_before += count_edges(mesh.surface).boundary;
   Random random(11);
   LiveLevel live(model.original, model.levels);
   int broken = 0, more_open = 0, doubled = 0;
@@ -181,7 +173,7 @@ void print_queries(const std::string& name, const Leveled& model, int count) {
       } catch (const Error&) {
         ++broken;
       }
-      open += count_open_edges(mesh.surface);
+      open += count_edges(mesh.surface).boundary;
       seen.clear();
       for (std::array<VertexId, 3> t : mesh.surface.triangles) {
         std::sort(t.begin(), t.end());
