@@ -150,6 +150,14 @@ TriMesh Replayed::finish() {
 
 }  // namespace
 
+std::size_t CollapseRecord::steps_to(std::uint64_t triangles) const {
+  if (triangles >= triangles_before) return 0;
+  const auto last = std::partition_point(steps.begin(), steps.end(), [&](const CollapseStep& step) {
+    return triangles_before - step.faces_end > triangles;
+  });
+  return last == steps.end() ? steps.size() : static_cast<std::size_t>(last - steps.begin()) + 1;
+}
+
 std::vector<TriMesh> replay(std::span<const TriMesh* const> sources, const CollapseRecord& record,
                             std::size_t step_count) {
   if (step_count > record.steps.size()) throw Error(ErrorKind::usage, "the record has fewer steps", "replay");
