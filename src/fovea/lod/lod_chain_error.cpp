@@ -9,6 +9,9 @@ namespace fovea {
 
 namespace {
 
+/// Of the diagonal: below it distances are what rounding positions to floats leaves.
+constexpr double kRounding = 2e-7;
+
 Surface posed(const Model& model, const Pose& pose) {
   Surface surface;
   for (const Instance& instance : instances(model, pose)) {
@@ -38,6 +41,7 @@ LodError LodReference::error(const Model& level, const Context& context) const {
   for (std::size_t p = 0; p < poses_.size(); ++p) {
     const SurfaceDistance distance =
         surface_distance(surfaces_[p], posed(level, poses_[p]), samples_, context);
+    if (distance.hausdorff() < kRounding * diagonal(surfaces_[p])) continue;
     error.max = std::max(error.max, distance.hausdorff());
     error.mean = std::max(error.mean, distance.mean());
   }

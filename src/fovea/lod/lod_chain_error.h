@@ -18,7 +18,8 @@ class LodReference {
   /// Refers to the model. `key_poses` as in LodChainOptions.
   LodReference(const Model& model, std::int64_t key_poses, std::int64_t samples, const Context& context);
 
-  /// Of a model with the same nodes and animations. Throws Error(cancelled).
+  /// Of a model with the same nodes and animations; 0 for what is no more than rounding. Throws
+  /// Error(cancelled).
   LodError error(const Model& level, const Context& context) const;
 
  private:
