@@ -158,6 +158,21 @@ TEST(LodGltf, ChildrenStayWithTheNode) {
   EXPECT_EQ(levels_of(all.nodes[1]).size(), 3U) << "a leaf names its levels itself";
 }
 
+TEST(LodGltf, InstancesGoWithTheMesh) {
+  Model model = test::model_of(test::icosphere(3));
+  model.nodes[0].instances = {compose({1, 0, 0}, {}, {1, 1, 1}), compose({9, 0, 0}, {}, {1, 1, 1})};
+  model.animations = {moving({channel(0, "scale")}, 3)};
+  const Model all = merged(chain_of(model));
+  EXPECT_TRUE(all.nodes[0].instances.empty());
+  const Node& shown = all.nodes[static_cast<std::size_t>(all.nodes[0].children.at(0))];
+  EXPECT_EQ(shown.instances, model.nodes[0].instances);
+  for (const int level : levels_of(shown))
+    EXPECT_EQ(all.nodes[static_cast<std::size_t>(level)].instances, model.nodes[0].instances);
+  const Json json = written(all);
+  EXPECT_FALSE(json["nodes"][0].contains("extensions"));
+  EXPECT_TRUE(json["nodes"][1]["extensions"].contains("EXT_mesh_gpu_instancing"));
+}
+
 TEST(LodGltf, LevelsShareImagesThatAreTheSame) {
   const Model model = test::textured(test::wavy_grid(16, 16, 0.1), 2);
   LodChainOptions options = test::quick_chain();

@@ -175,6 +175,7 @@ class LodMerger {
 
   void name_levels(Node& node, Json ids, double radius) {
     Json json = object_of(node.json);
+    if (json.contains("extensions") && !json["extensions"].is_object()) json.erase("extensions");
     json["extensions"][kLod]["ids"] = std::move(ids);
     Json coverage = Json::array();
     for (std::size_t i = 1; i < chain_.levels.size(); ++i) {
