@@ -1,9 +1,9 @@
-// Simplifies models with the command line, shrinks their textures, writes saliency into them, and puts every
-// output through the Khronos glTF validator.
+// Simplifies models with the command line, makes levels of detail of them, shrinks their textures, writes saliency
+// into them, and puts every output through the Khronos glTF validator.
 //
 //   node validate.mjs FOVEA OUTPUT-FOLDER sample NAME     a sample model, in every way of writing
-//   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER: at 10 %, with small
-//                                                         textures, as a heat map and with an attribute
+//   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER: at 10 %, with levels,
+//                                                         with small textures, as a heat map and with an attribute
 //
 // Exit status: 0 all valid, 1 something is not, 77 (skipped) if FOVEA_DATA is not set.
 
@@ -82,6 +82,12 @@ function textureFault(input, output, ...options) {
     after > before || (before > 0 && after === 0) ? `${after} triangles instead of ${before}` : null);
 }
 
+// All levels in one file: as many triangles as the original's half and quarter beside it, at most.
+function lodsFault(input, output, ...options) {
+  return faultOf(input, output, ['lods', '--levels', '3', '--no-pictures', '--distance-samples', '1000', ...options],
+    (before, after) => after > Math.ceil(1.75 * before) + 2 ? `${after} triangles in levels of ${before}` : null);
+}
+
 async function report(label, check) {
   const fault = await check;
   console.log(`${fault ? 'BAD ' : 'ok  '} ${label}${fault ? `\n    ${fault}` : ''}`);
@@ -123,6 +129,13 @@ async function sampleFaults() {
     const output = path.join(outputFolder, `${name}-${suffix}`);
     faults += await report(path.basename(output), textureFault(input, output, ...options));
   }
+  for (const [suffix, ...options] of [
+    ['lods.glb', ...quick],
+    ['lods-quantized.glb', ...quick, '--textures', 'keep', '--quantize', '--compression', 'meshopt'],
+  ]) {
+    const output = path.join(outputFolder, `${name}-${suffix}`);
+    faults += await report(path.basename(output), lodsFault(input, output, ...options));
+  }
   return faults;
 }
 
@@ -136,6 +149,7 @@ async function corpusFaults() {
     const output = path.join(outputFolder, file.replaceAll(path.sep, '_').replace(/\.gltf$/, '.glb'));
     faults += await report(file, simplifyFault(input, output, 0.1));
     faults += await report(`${file}, textures`, textureFault(input, output, '--texture-format', 'webp', '--max-texture', '128', '--texture-psnr', '30'));
+    faults += await report(`${file}, levels`, lodsFault(input, output.replace(/\.glb$/, '-lods.glb'), '--metric', 'quadric', '--textures', 'keep'));
     for (const kind of ['heat', 'attribute'])
       faults += await report(`${file}, ${kind}`, saliencyFault(input, output.replace(/\.glb$/, `-${kind}.glb`), kind));
   }

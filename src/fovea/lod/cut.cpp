@@ -61,7 +61,7 @@ std::uint64_t triangles_of(const MultiTessellation& levels, const Cut& cut) {
 
 Cut cut_at_triangles(const MultiTessellation& levels, std::uint64_t triangles) {
   Cut cut(levels.step_count(), 0);
-  for (std::size_t s = 0; s < cut.size() && levels.record.triangles_after(s) > triangles; ++s) cut[s] = 1;
+  std::fill_n(cut.begin(), levels.record.steps_to(triangles), std::uint8_t{1});
   return cut;
 }
 

@@ -166,6 +166,14 @@ std::vector<TriMesh> replay_where(std::span<const TriMesh* const> sources, const
 
 }  // namespace
 
+std::size_t CollapseRecord::steps_to(std::uint64_t triangles) const {
+  if (triangles >= triangles_before) return 0;
+  const auto last = std::partition_point(steps.begin(), steps.end(), [&](const CollapseStep& step) {
+    return triangles_before - step.faces_end > triangles;
+  });
+  return last == steps.end() ? steps.size() : static_cast<std::size_t>(last - steps.begin()) + 1;
+}
+
 const float* write_numbers(TriMesh& mesh, const ValueWrite& write, const float* numbers) {
   if (write.layer == kInvalid) {
     for (auto& morph : mesh.position_morphs) {

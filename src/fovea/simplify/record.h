@@ -59,6 +59,8 @@ struct CollapseRecord {
   std::uint64_t triangles_after(std::size_t n) const {
     return triangles_before - (n > 0 ? steps[n - 1].faces_end : 0);
   }
+  /// The fewest steps that leave at most so many triangles; all if no number does. O(log #steps).
+  std::size_t steps_to(std::uint64_t triangles) const;
 };
 
 /// The meshes after the first `step_count` steps. `sources` are the meshes that were simplified, in

@@ -338,4 +338,13 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
   return result;
 }
 
+Model replay(const Model& model, const CollapseRecord& record, std::size_t step_count) {
+  std::vector<const TriMesh*> sources;
+  for (const Mesh& mesh : model.meshes) sources.push_back(&mesh.surface);
+  std::vector<TriMesh> surfaces = replay(sources, record, step_count);
+  Model level = model;
+  for (std::size_t m = 0; m < surfaces.size(); ++m) level.meshes[m].surface = std::move(surfaces[m]);
+  return level;
+}
+
 }  // namespace fovea

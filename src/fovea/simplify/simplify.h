@@ -129,4 +129,9 @@ struct SimplifyResult {
 SimplifyResult simplify(const Model& model, const SimplifyOptions& options, const Importance& importance,
                         Context& context);
 
+/// The level of `model` after the first steps of its record: what `simplify` would have returned, had it
+/// stopped there. With `SimplifyOptions::per_mesh` steps go mesh by mesh, and only all of them make sense.
+/// Throws Error(usage) if the record has fewer. Cost: that of `replay` of meshes, and a copy of the rest.
+Model replay(const Model& model, const CollapseRecord& record, std::size_t step_count);
+
 }  // namespace fovea

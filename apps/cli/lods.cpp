@@ -1,0 +1,310 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "field_source.h"
+#include "fovea/base/text.h"
+#include "fovea/io/read.h"
+#include "fovea/io/write.h"
+#include "fovea/lod/lod_chain.h"
+#include "fovea/lod/lod_chain_files.h"
+#include "fovea/lod/lod_chain_gltf.h"
+#include "input.h"
+#include "lods_text.h"
+#include "report.h"
+#include "shared_options.h"
+#include "text.h"
+#include "verb.h"
+
+namespace fovea::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class LevelTextures { follow, keep };
+enum class Rebake { off, on };
+
+class Lods : public Verb {
+ public:
+  VerbText text() const override {
+    return {
+        "lods",
+        "make a chain of levels of detail, measured, in files of their own or in one",
+        "Simplifies a model once and takes every level from the steps on the way, then measures each against "
+        "the "
+        "original: distance of the surfaces, at rest and in key poses, and pictures as large as the level "
+        "will be. "
+        "The output is a folder, which gets NAME_LOD0.glb, NAME_LOD1.glb, ... and NAME_lods.json with all "
+        "that is "
+        "known of them; or a .glb, which gets all levels as MSFT_lod has them. Level 0 is the original. A "
+        "level "
+        "that would be no smaller, or no farther from the original, than a neighbour is left out. Exit code "
+        "8 says "
+        "that fewer triangles were asked for than could be reached; the output is written all the same.",
+        {{"fovea lods helmet.glb -o lods", "Four levels, each with half the triangles of the one before."},
+         {"fovea lods helmet.glb -o helmet-lods.glb --triangles 8000,2000,500",
+          "The original and three levels of so many triangles in one file."},
+         {"fovea lods chair.glb -o lods --coverage 0.5,0.25,0.1",
+          "Each level as simple as one pixel of error allows where the chair takes a half, a quarter, a "
+          "tenth of "
+          "the screen's height."},
+         {"fovea lods tree.glb -o lods --distances 20,50,200 --fov 70 --height 1440 --pixel-error 2",
+          "The same by distances, on another screen."},
+         {"fovea lods fox.glb -o lods --name 'LOD{i}_{name}' --textures keep",
+          "Names as Unreal has them; every level has all texels."}}};
+  }
+
+  void declare(Arguments& arguments) override {
+    arguments.add(model_argument(input_));
+    arguments.add("Levels", level_options());
+    arguments.add("Simplification", simplify_options());
+    arguments.add(
+        "Simplification",
+        {describe_field("importance", "How much each vertex matters (1 is neutral, more keeps)", importance_),
+         {"allow-miss", "Exit with 0 even if a number of triangles is not reached.", &allow_miss_, ""}});
+    arguments.add("Textures", texture_options());
+    arguments.add("Errors", error_options());
+    arguments.add("Output", output_options());
+    arguments.add("Output", describe(write_options_));
+    arguments.add("Limits", describe(read_options_));
+    declare_needs(arguments);
+    arguments.add_hint("ratio", "a ratio is a fraction: 0.5 halves the triangles from level to level");
+  }
+
+  int run(Session& session) override {
+    check_request();
+    const Input input = read_input(session, input_, read_options_);
+    need_triangles(input);
+    session.report["inputs"] = inputs_json({&input, 1});
+    Importance importance;
+    if (!importance_.empty())
+      importance = session.phase("importance", [&] { return load_importance(input); });
+    if (rebake_ == Rebake::on) options_.textures.rebake.original = &input.model;
+    LodChain chain = session.phase(
+        "levels", input_, [&] { return make_lod_chain(input.model, options_, importance, session.context); });
+    std::vector<LodFile> files = session.phase("encode", [&] {
+      return make_lod_files(chain, name_, stem(), original(input), write_options_, session.context);
+    });
+    if (chain.levels.size() < 2) {
+      throw Error(ErrorKind::unsupported, "no level is smaller than the original", input_,
+                  "the notes say why; for a file that is compressed, --quantize --compression meshopt");
+    }
+    const std::string sidecar = lod_sidecar(chain, files, fs::path(input_).filename().string());
+    const std::vector<std::string> written =
+        session.phase("write", [&] { return write(chain, files, sidecar, session.context); });
+    return tell(session, chain, files, sidecar, written);
+  }
+
+ private:
+  OptionList level_options() {
+    OptionList list = describe(options_);
+    std::erase_if(list, [](const Option& o) { return o.name != "levels" && o.name != "ratio"; });
+    list.push_back(
+        {"triangles", "Triangles of levels 1, 2, ..., falling: 10000,3000,500.", &triangles_, "counts"});
+    list.push_back(
+        {"coverage",
+         "Where levels 1, 2, ... come in, falling: the part of the screen's height that the model's "
+         "bounding sphere takes there. Each level is as simple as --pixel-error allows.",
+         &coverages_, "fractions"});
+    list.push_back({"distances",
+                    "The same as distances from the eye to the sphere's centre, rising, in scene units.",
+                    &distances_, "lengths"});
+    const OptionList screen = describe(options_.screen);
+    list.insert(list.end(), screen.begin(), screen.end());
+    return list;
+  }
+
+  OptionList simplify_options() {
+    static const std::set<std::string> kTaken{"placement",     "uv-weight",       "normal-weight",
+                                              "color-weight",  "boundary-weight", "seam-weight",
+                                              "lock-boundary", "keep-topology"};
+    OptionList list = describe(options_.simplify);
+    std::erase_if(list, [](const Option& o) { return !kTaken.contains(o.name); });
+    list.push_back(
+        {"metric",
+         "What a collapse costs, as of \"fovea simplify\". auto: quadric for all levels, but pictures for "
+         "the last part of the way to the coarsest of given counts, if it is small enough.",
+         choice(options_.simplify.metric,
+                {"auto", "quadric", "visibility", "entropy", "polygon-entropy", "image"}),
+         ""});
+    return list;
+  }
+
+  OptionList texture_options() {
+    OptionList list{
+        {"textures",
+         "Whether the images of a level follow its size on the screen: about one texel for each pixel that "
+         "shows "
+         "them where the level comes in, as seen from all around.",
+         choice(textures_, {"follow", "keep"}), ""},
+        {"rebake", "Whether they are baked anew for the level's surface, too; then levels share fewer.",
+         choice(rebake_, {"off", "on"}), ""}};
+    for (const Option& option : describe(options_.textures)) {
+      if (option.name == "warp" || option.name == "texture-format" || option.name == "texture-psnr")
+        list.push_back(option);
+    }
+    return list;
+  }
+
+  OptionList error_options() {
+    OptionList list = describe(options_);
+    std::erase_if(list, [](const Option& o) { return o.name == "levels" || o.name == "ratio"; });
+    list.push_back({"pictures",
+                    "Compare pictures of each level with the original's; --no-pictures is quicker.",
+                    &options_.pictures, ""});
+    return list;
+  }
+
+  OptionList output_options() {
+    return {
+        {"output", "A folder for a file for each level, or a .glb for all of them.", &output_,
+         "folder or file"},
+        {"name", "Name of a level's file: {name} is the model's, {i} the level's number.", &name_, "pattern"},
+        {"vanish", "The coverage below which not even the last level is shown; 0 always shows it.", &vanish_,
+         "", 0, 1}};
+  }
+
+  void declare_needs(Arguments& arguments) const {
+    need_format(arguments, write_options_);
+    arguments.need({{"levels", "ratio"}, "no --triangles, --coverage and --distances", [this] {
+                      return triangles_.empty() && coverages_.empty() && distances_.empty();
+                    }});
+    arguments.need({{"rebake", "warp", "texture-format", "texture-psnr"}, "--textures follow", [this] {
+                      return textures_ == LevelTextures::follow;
+                    }});
+    arguments.need({{"name"}, "a folder as output", [this] { return !is_one_file(); }});
+    arguments.need({{"vanish"}, "a .glb as output", [this] { return is_one_file(); }});
+  }
+
+  bool is_one_file() const { return lower_extension(output_) == ".glb" && !fs::is_directory(output_); }
+  std::string stem() const { return fs::path(input_).stem().string(); }
+  std::string sidecar_name() const { return stem() + "_lods.json"; }
+
+  void check_request() {
+    read_lists();
+    options_.textures_follow = textures_ == LevelTextures::follow;
+    check_input(input_);
+    const std::string example = is_one_file() ? "lods.glb" : "lods";
+    check_output(output_, example, {input_}, write_options_.force, [&](const fs::path& path) {
+      if (is_one_file()) {
+        fovea::check_output(path, write_options_);
+      } else {
+        check_folder(path);
+      }
+    });
+  }
+
+  void read_lists() {
+    options_.triangles = count_list(triangles_, "triangles");
+    options_.coverages = number_list(coverages_, "coverage");
+    options_.distances = number_list(distances_, "distances");
+    const int given = !triangles_.empty() + !coverages_.empty() + !distances_.empty();
+    if (given > 1)
+      throw Error(ErrorKind::usage, "levels are asked for in several ways", {},
+                  "give one of --triangles, --coverage and --distances");
+  }
+
+  /// Where levels are to go: a folder that is there or can be made, with nothing in the way.
+  void check_folder(const fs::path& path) const {
+    const fs::path folder = folder_of_levels();
+    const bool exists = fs::exists(path);
+    if (!fs::is_directory(path) && path.has_filename() && path.has_extension())
+      throw Error(ErrorKind::usage, "this is neither a folder nor a .glb", output_,
+                  "name a folder for a file for each level, or a .glb for all of them");
+    if (!exists) {
+      check_place(folder, true);
+      return;
+    }
+    if (!fs::is_directory(path)) throw Error(ErrorKind::output, "this is not a folder", output_);
+    for (std::size_t i = 0; i < planned_levels(); ++i)
+      check_place(folder / lod_name(name_, stem(), i), write_options_.force);
+    check_place(folder / sidecar_name(), write_options_.force);
+  }
+
+  /// Without a slash at its end.
+  fs::path folder_of_levels() const {
+    const fs::path path(output_);
+    return path.has_filename() ? path : path.parent_path();
+  }
+
+  std::size_t planned_levels() const {
+    const std::size_t listed =
+        std::max({options_.triangles.size(), options_.coverages.size(), options_.distances.size()});
+    return listed > 0 ? listed + 1 : static_cast<std::size_t>(options_.levels);
+  }
+
+  Importance load_importance(const Input& input) const {
+    NamedFields found = load_fields(importance_, input, read_options_);
+    about(found.path, [&] { check(found.fields); });
+    return std::move(found.fields);
+  }
+
+  /// The input itself, if it is a GLB that needs no other file.
+  std::optional<LodFile> original(const Input& input) const {
+    if (input.bytes.format != FileFormat::glb || input.bytes.files != fs::file_size(input_))
+      return std::nullopt;
+    return LodFile{"", read_file(input_, read_options_.max_file_bytes), input.bytes.kinds};
+  }
+
+  /// Returns what was written.
+  std::vector<std::string> write(const LodChain& chain, std::vector<LodFile>& files,
+                                 const std::string& sidecar, Context& context) const {
+    if (is_one_file()) {
+      write_model(with_lods(chain, vanish_, context), output_, write_options_, context);
+      return {output_};
+    }
+    // Named from the folder's own, which is made with them or not at all.
+    const fs::path folder = folder_of_levels();
+    const fs::path place = fs::absolute(folder).lexically_normal();
+    const fs::path inside = place.filename();
+    std::vector<OutputFile> outputs;
+    std::vector<std::string> written;
+    const auto add = [&](const std::string& name, std::vector<std::byte> bytes) {
+      outputs.push_back({(inside / name).string(), std::move(bytes)});
+      written.push_back((folder / name).string());
+    };
+    for (const LodFile& file : files) add(file.name, file.glb);
+    const auto* text = reinterpret_cast<const std::byte*>(sidecar.data());
+    add(sidecar_name(), {text, text + sidecar.size()});
+    write_files(place, outputs, write_options_.force);
+    return written;
+  }
+
+  int tell(Session& session, const LodChain& chain, const std::vector<LodFile>& files,
+           const std::string& sidecar, const std::vector<std::string>& written) const {
+    Json& outputs = session.report["outputs"] = Json::array();
+    for (const std::string& path : written) outputs.push_back(file_json(path));
+    const Json levels = Json::parse(sidecar);
+    for (const auto& [key, value] : levels.items()) {
+      if (key != "schema_version" && key != "source") session.report[key] = value;
+    }
+    session.report["metric"] = to_string(chain.metric);
+    session.report["metric_from_triangles"] = chain.metric_from;
+    session.report["reached"] = chain.reached;
+    session.print_summary(fmt::format("{} -> {}\n{}time     {}\n", printable(input_), printable(output_),
+                                      levels_text(chain, files), session.spent_text()));
+    return target_code(session, chain.reached, allow_miss_);
+  }
+
+  std::string input_, output_, importance_;
+  std::string triangles_, coverages_, distances_;
+  std::string name_ = "{name}_LOD{i}";
+  double vanish_ = 0;
+  bool allow_miss_ = false;
+  LevelTextures textures_ = LevelTextures::follow;
+  Rebake rebake_ = Rebake::off;
+  LodChainOptions options_;
+  ReadOptions read_options_;
+  WriteOptions write_options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_lods() { return std::make_unique<Lods>(); }
+
+}  // namespace fovea::cli
