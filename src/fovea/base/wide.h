@@ -25,4 +25,10 @@ using WideFloats = WideArray<float>;
 using WideInts = WideArray<std::int32_t>;
 using WideWords = WideArray<std::uint32_t>;
 
+/// The same as vectors of the language, for loops that the compiler does not see through: comparisons give
+/// lanes of −1 or 0. Only within functions, as machines differ in how they would be passed.
+using FloatLanes [[gnu::vector_size(32)]] = float;
+using IntLanes [[gnu::vector_size(32)]] = std::int32_t;
+using WordLanes [[gnu::vector_size(32)]] = std::uint32_t;
+
 }  // namespace fovea

@@ -268,17 +268,17 @@ struct FaceValues::Shading::Samples {
 };
 
 void FaceValues::Shading::row(int y, int x0, int x1, std::uint32_t* out) const {
-  std::array<Pixel, 64> pixels;
+  std::array<std::uint32_t, 64> pixels;
   for (int begin = x0; begin < x1; begin += 64) {
     const int count = std::min(64, x1 - begin);
     for (int i = 0; i < count; ++i)
-      pixels[static_cast<std::size_t>(i)] = {static_cast<std::uint16_t>(begin + i),
-                                             static_cast<std::uint16_t>(y)};
+      pixels[static_cast<std::size_t>(i)] =
+          static_cast<std::uint32_t>(begin + i) + (static_cast<std::uint32_t>(y) << 16);
     at(std::span(pixels).first(static_cast<std::size_t>(count)), out + (begin - x0));
   }
 }
 
-void FaceValues::Shading::at(std::span<const Pixel> pixels, std::uint32_t* out) const {
+void FaceValues::Shading::at(std::span<const std::uint32_t> pixels, std::uint32_t* out) const {
   if (values_.content_ == PixelContent::face) {
     std::fill_n(out, pixels.size(), look_.number);
     return;
@@ -288,9 +288,9 @@ void FaceValues::Shading::at(std::span<const Pixel> pixels, std::uint32_t* out) 
   for (std::size_t begin = 0; begin < pixels.size(); begin += kWide) {
     const std::size_t count = std::min(kWide, pixels.size() - begin);
     for (std::size_t i = 0; i < kWide; ++i) {  // the last pixel fills up
-      const Pixel& pixel = pixels[begin + std::min(i, count - 1)];
-      samples.x[i] = pixel.x;
-      samples.y[i] = pixel.y;
+      const std::uint32_t pixel = pixels[begin + std::min(i, count - 1)];
+      samples.x[i] = static_cast<float>(static_cast<std::int32_t>(pixel & 0xFFFF));
+      samples.y[i] = static_cast<float>(static_cast<std::int32_t>(pixel >> 16));
     }
     plane_at(normal_, 3, samples.x, samples.y, samples.over_w);
     invert(samples.over_w);
