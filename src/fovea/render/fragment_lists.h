@@ -36,9 +36,9 @@ struct FrontPixel {
 /// What most looks at kWide pixels beside each other need, in two cache lines: the nearest fragment, and how
 /// near the second is.
 struct alignas(64) FrontBlock {
-  FloatLanes nearness;
-  WordLanes triangle, value;
-  FloatLanes second_nearness;
+  WideFloats nearness;
+  WideWords triangle, value;
+  WideFloats second_nearness;
 };
 
 /// All triangles behind each pixel of a view, nearest first, hidden ones among them: what is visible after a

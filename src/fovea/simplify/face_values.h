@@ -83,6 +83,9 @@ class FaceValues {
 
    private:
     struct Samples;
+    static void on_surface(const CornerPlanes::Plane& plane, int number, const Samples& at, WideFloats& out);
+    void color_at(const Samples& at, WideWords& out) const;
+    void region_texel(const Samples& at, WideWords& out) const;
     void shade(const Samples& at, WideWords& out) const;
     void light_up(const Samples& at, WideWords& color) const;
 

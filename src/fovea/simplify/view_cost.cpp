@@ -32,39 +32,39 @@ double log2_of(double x) {
 
 /// What a collapse would leave in kWide pixels, of the faces around it.
 struct alignas(64) LocalBlock {
-  FloatLanes nearness;  // of the nearest
-  WordLanes face;       // counted from 1; 0: none
+  WideFloats nearness;  // of the nearest
+  WideWords face;       // counted from 1; 0: none
 };
 constexpr int kColumn = static_cast<int>(kWide);  // pixels
 
-constexpr IntLanes kLanes = {0, 1, 2, 3, 4, 5, 6, 7};
-constexpr WordLanes kLaneBits = {1, 2, 4, 8, 16, 32, 64, 128};
+constexpr WideInts kLanes = {0, 1, 2, 3, 4, 5, 6, 7};
+constexpr WideWords kLaneBits = {1, 2, 4, 8, 16, 32, 64, 128};
 
 /// Notes a face where it is nearer than what is noted. `blocks` is that of the first pixels of the sight, rows
 /// of a column after each other.
 FOVEA_WIDE void lay_face(const WideTriangle& triangle, std::uint32_t face, int first_column, int top,
                          int rows, LocalBlock* blocks) {
   const SampleBox box = triangle.box;
-  const FloatLanes low = FloatLanes{} + triangle.plane.low, high = FloatLanes{} + triangle.plane.high;
-  const WordLanes faces = WordLanes{} + face;
+  const WideFloats low = WideFloats{} + triangle.plane.low, high = WideFloats{} + triangle.plane.high;
+  const WideWords faces = WideWords{} + face;
   const double at_0 = triangle.plane.at_0, dy = triangle.plane.dy;
   const auto [b0, b1, b2] = triangle.b;
   for (int column = box.left / kColumn; column * kColumn < box.right; ++column) {
-    const IntLanes x = kLanes + column * kColumn;
-    const auto words = reinterpret_cast<WordLanes>(x);
+    const WideInts x = kLanes + column * kColumn;
+    const auto words = reinterpret_cast<WideWords>(x);
     const auto y0 = static_cast<std::uint32_t>(box.top);
-    WordLanes edge0 = triangle.a[0] * words + (b0 * y0 + triangle.c[0]);
-    WordLanes edge1 = triangle.a[1] * words + (b1 * y0 + triangle.c[1]);
-    WordLanes edge2 = triangle.a[2] * words + (b2 * y0 + triangle.c[2]);
-    const FloatLanes along = __builtin_convertvector(x, FloatLanes) * static_cast<float>(triangle.plane.dx);
+    WideWords edge0 = triangle.a[0] * words + (b0 * y0 + triangle.c[0]);
+    WideWords edge1 = triangle.a[1] * words + (b1 * y0 + triangle.c[1]);
+    WideWords edge2 = triangle.a[2] * words + (b2 * y0 + triangle.c[2]);
+    const WideFloats along = __builtin_convertvector(x, WideFloats) * static_cast<float>(triangle.plane.dx);
     LocalBlock* block = blocks + (column - first_column) * rows + (box.top - top);
     for (int y = box.top; y < box.bottom; ++y, ++block) {
-      FloatLanes nearness = along + static_cast<float>(at_0 + dy * y);
+      WideFloats nearness = along + static_cast<float>(at_0 + dy * y);
       nearness = nearness < low ? low : nearness;
       nearness = nearness > high ? high : nearness;
-      const FloatLanes known = block->nearness;
-      const IntLanes is_inside = reinterpret_cast<IntLanes>(edge0 | edge1 | edge2) >= 0;
-      const IntLanes is_nearer = is_inside & (nearness > known);
+      const WideFloats known = block->nearness;
+      const WideInts is_inside = reinterpret_cast<WideInts>(edge0 | edge1 | edge2) >= 0;
+      const WideInts is_nearer = is_inside & (nearness > known);
       block->nearness = is_nearer ? nearness : known;
       block->face = is_nearer ? faces : block->face;
       edge0 += b0;
@@ -101,15 +101,15 @@ FOVEA_WIDE std::size_t find_changes(const BlockColumn& column, std::span<const s
   const LocalBlock* local = column.locals;
   for (int y = column.begin; y < column.end; ++y, ++local) {
     const FrontBlock& front = column.fronts[y];
-    IntLanes goes{};
+    WideInts goes{};
     for (const std::uint32_t t : going) goes |= front.triangle == t;
-    const FloatLanes nearness = local->nearness;
-    const FloatLanes bound = goes ? front.second_nearness : front.nearness;
-    const IntLanes wins = nearness > bound;
-    const IntLanes asks = ~wins & (goes | ((nearness == bound) & (local->face != 0)));
+    const WideFloats nearness = local->nearness;
+    const WideFloats bound = goes ? front.second_nearness : front.nearness;
+    const WideInts wins = nearness > bound;
+    const WideInts asks = ~wins & (goes | ((nearness == bound) & (local->face != 0)));
     const auto bits = std::bit_cast<std::array<std::uint64_t, 4>>(
-        (reinterpret_cast<WordLanes>(wins) & kLaneBits) |
-        (reinterpret_cast<WordLanes>(asks) & (kLaneBits << 8)));
+        (reinterpret_cast<WideWords>(wins) & kLaneBits) |
+        (reinterpret_cast<WideWords>(asks) & (kLaneBits << 8)));
     const std::uint64_t pair = bits[0] | bits[1] | bits[2] | bits[3];
     const auto all = static_cast<std::uint32_t>(pair | pair >> 32);
     const std::uint32_t pixel = (static_cast<std::uint32_t>(y) << 16) + static_cast<std::uint32_t>(column.x);
