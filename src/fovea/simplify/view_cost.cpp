@@ -258,8 +258,8 @@ ViewCost::~ViewCost() = default;
 
 ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceValues& values,
                    ViewMeasure measure, int size, std::vector<std::vector<std::uint32_t>> originals,
-                   const Context& context)
-    : state_(state), shown_(shown), values_(values), measure_(measure), context_(context) {
+                   const Context& context, Team& team)
+    : state_(state), shown_(shown), values_(values), measure_(measure), team_(team) {
   views_.assign(shown.view_count(), {FragmentLists(size, size, values.background()), {}, {}});
   const std::size_t pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   if (measure == ViewMeasure::entropy) {
@@ -351,15 +351,16 @@ void ViewCost::for_showings(std::span<const std::uint32_t> faces, Change&& chang
   const double depth =
       static_cast<double>(views_[0].lists.size()) / (static_cast<double>(state_.mesh.live_faces) + 1);
   const double fragments = depth * static_cast<double>(faces.size() * views_.size());
-  parallel_for(context_, views_.size(), fragments > kMuch ? 1 : views_.size(),
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t v = begin; v < end; ++v) {
-                   for (const std::uint32_t f : faces) {
-                     for (const ShownInstance& showing : shown_.showings(state_.slot_of_face(f)))
-                       change(v, showing, f);
-                   }
-                 }
-               });
+  const auto in_view = [&](std::size_t v) {
+    for (const std::uint32_t f : faces) {
+      for (const ShownInstance& showing : shown_.showings(state_.slot_of_face(f))) change(v, showing, f);
+    }
+  };
+  if (fragments > kMuch) {
+    team_.run(views_.size(), in_view);
+  } else {
+    for (std::size_t v = 0; v < views_.size(); ++v) in_view(v);
+  }
 }
 
 void ViewCost::put_in(std::span<const std::uint32_t> faces) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fovea/base/context.h"
+#include "fovea/base/team.h"
 #include "fovea/render/fragment_lists.h"
 #include "fovea/simplify/collapse_state.h"
 #include "fovea/simplify/face_values.h"
@@ -53,7 +54,7 @@ class ViewCost {
   /// Renders what is shown, views in parallel. All must outlive this. `size` is that of the views;
   /// `originals` [#views][#pixels] are the colours to compare with, those of now if there are none.
   ViewCost(const CollapseState& state, ShownSurface& shown, const FaceValues& values, ViewMeasure measure,
-           int size, std::vector<std::vector<std::uint32_t>> originals, const Context& context);
+           int size, std::vector<std::vector<std::uint32_t>> originals, const Context& context, Team& team);
   ~ViewCost();
 
   /// Memory of a thread that prices.
@@ -126,7 +127,7 @@ class ViewCost {
   ShownSurface& shown_;
   const FaceValues& values_;
   const ViewMeasure measure_;
-  const Context& context_;
+  Team& team_;
   std::vector<ViewState> views_;
   std::vector<std::int64_t> n_log_n_;  // [#pixels + 1] n log₂ n, in units of 1 / log_scale_
   double log_scale_ = 1;
