@@ -43,4 +43,26 @@ FOVEA_WIDE_PART void take_sign_off(WideFloats& x) {
   x = reinterpret_cast<WideFloats>(reinterpret_cast<WideInts>(x) & 0x7FFFFFFF);
 }
 
+/// Bit i of `out` is what lane i has, which is bit i or nothing.
+FOVEA_WIDE_PART void gather_bits(const WideWords& lanes, std::uint32_t& out) {
+  using Half [[gnu::vector_size(16)]] = std::uint32_t;
+  using Pair [[gnu::vector_size(16)]] = std::uint64_t;
+  const Half half = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) |
+                    __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const Pair pair = reinterpret_cast<Pair>(half);
+  const std::uint64_t both = pair[0] | pair[1];
+  out = static_cast<std::uint32_t>(both | both >> 32);
+}
+
+/// Lanes by their numbers: out[i] = in[numbers[i]].
+FOVEA_WIDE_PART void pick(const WideWords& in, const WideWords& numbers, WideWords& out) {
+#if defined(__GNUC__) && !defined(__clang__)
+  out = __builtin_shuffle(in, numbers);
+#else
+  WideWords picked{};
+  for (std::size_t i = 0; i < kWide; ++i) picked[i] = in[numbers[i]];
+  out = picked;
+#endif
+}
+
 }  // namespace fovea

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -40,25 +41,69 @@ constexpr int kColumn = static_cast<int>(kWide);  // pixels
 constexpr WideInts kLanes = {0, 1, 2, 3, 4, 5, 6, 7};
 constexpr WideWords kLaneBits = {1, 2, 4, 8, 16, 32, 64, 128};
 
-/// Notes a face where it is nearer than what is noted. `blocks` is that of the first pixels of the sight, rows
-/// of a column after each other.
-FOVEA_WIDE void lay_face(const WideTriangle& triangle, std::uint32_t face, int first_column, int top,
-                         int rows, LocalBlock* blocks) {
+/// Rows of a column of blocks.
+struct Rows {
+  int begin = std::numeric_limits<int>::max(), end = 0;
+};
+
+/// In which rows a triangle that fits may cover pixels of each column of its box: it is cut at the columns'
+/// borders.
+FOVEA_WIDE void find_rows(const std::array<ScreenVertex, 3>& v, const SampleBox& box, Rows* out) {
+  constexpr std::int32_t kSide = kColumn * kSubsamples, kHalf = kSubsamples / 2;
+  constexpr float kFar = 1 << 30;
+  const int first = box.left / kColumn, count = (box.right - 1) / kColumn - first + 1;
+  for (int begin = 0; begin < count; begin += kColumn) {
+    WideFloats left, lowest = WideFloats{} + kFar, highest = WideFloats{} - kFar;
+    // Counted from a corner, so that nothing is rounded by much.
+    const WideInts start = (kLanes + (first + begin)) * kSide - v[0].x;
+    convert(start, left);
+    const WideFloats right = left + static_cast<float>(kSide);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ScreenVertex &p = v[k], &q = v[(k + 1) % 3];
+      const auto px = static_cast<float>(p.x - v[0].x), py = static_cast<float>(p.y - v[0].y);
+      const auto dx = static_cast<float>(q.x - p.x), dy = static_cast<float>(q.y - p.y);
+      const float low_x = std::min(px, px + dx), high_x = std::max(px, px + dx);
+      const float slope = dx != 0 ? dy / dx : 0;
+      const WideFloats from = left > low_x ? left : low_x, to = right < high_x ? right : high_x;
+      // An upright edge has its corners in other edges, too.
+      const WideFloats at_from = py + (from - px) * slope, at_to = py + (to - px) * slope;
+      const WideInts is_there = from <= to;
+      const WideFloats low = at_from < at_to ? at_from : at_to, high = at_from < at_to ? at_to : at_from;
+      lowest = is_there & (low < lowest) ? low : lowest;
+      highest = is_there & (high > highest) ? high : highest;
+    }
+    constexpr std::int32_t kMargin = 4;  // more than is rounded
+    WideInts low, high;
+    convert(lowest, low);
+    convert(highest, high);
+    low = (low + (v[0].y - kHalf - kMargin)) >> kSubsampleBits;
+    high = ((high + (v[0].y - kHalf + kMargin)) >> kSubsampleBits) + 1;
+    low = low > box.top ? low : box.top;
+    high = high < box.bottom ? high : box.bottom;
+    for (int i = 0; i < std::min(count - begin, kColumn); ++i) out[begin + i] = {low[i], high[i]};
+  }
+}
+
+/// Notes a face where it is nearer than what is noted. `rows` are those of the columns of its box; `blocks` is
+/// that of the first pixels of the sight, `height` rows of a column after each other.
+FOVEA_WIDE void lay_face(const WideTriangle& triangle, const Rows* rows, std::uint32_t face, int first_column,
+                         int top, int height, LocalBlock* blocks) {
   const SampleBox box = triangle.box;
   const WideFloats low = WideFloats{} + triangle.plane.low, high = WideFloats{} + triangle.plane.high;
   const WideWords faces = WideWords{} + face;
   const double at_0 = triangle.plane.at_0, dy = triangle.plane.dy;
   const auto [b0, b1, b2] = triangle.b;
-  for (int column = box.left / kColumn; column * kColumn < box.right; ++column) {
+  for (int column = box.left / kColumn; column * kColumn < box.right; ++column, ++rows) {
+    if (rows->begin >= rows->end) continue;
     const WideInts x = kLanes + column * kColumn;
     const auto words = reinterpret_cast<WideWords>(x);
-    const auto y0 = static_cast<std::uint32_t>(box.top);
+    const auto y0 = static_cast<std::uint32_t>(rows->begin);
     WideWords edge0 = triangle.a[0] * words + (b0 * y0 + triangle.c[0]);
     WideWords edge1 = triangle.a[1] * words + (b1 * y0 + triangle.c[1]);
     WideWords edge2 = triangle.a[2] * words + (b2 * y0 + triangle.c[2]);
     const WideFloats along = __builtin_convertvector(x, WideFloats) * static_cast<float>(triangle.plane.dx);
-    LocalBlock* block = blocks + (column - first_column) * rows + (box.top - top);
-    for (int y = box.top; y < box.bottom; ++y, ++block) {
+    LocalBlock* block = blocks + (column - first_column) * height + (rows->begin - top);
+    for (int y = rows->begin; y < rows->end; ++y, ++block) {
       WideFloats nearness = along + static_cast<float>(at_0 + dy * y);
       nearness = nearness < low ? low : nearness;
       nearness = nearness > high ? high : nearness;
@@ -74,6 +119,12 @@ FOVEA_WIDE void lay_face(const WideTriangle& triangle, std::uint32_t face, int f
   }
 }
 
+/// So many blocks of nothing.
+FOVEA_WIDE void clear(LocalBlock* blocks, int count) {
+  for (int i = 0; i < count; ++i)
+    blocks[i] = {WideFloats{} - std::numeric_limits<float>::infinity(), WideWords{}};
+}
+
 /// Pixels that a face would show, with what they show now; or that nothing around the edge would.
 struct FoundPixels {
   std::uint32_t* pixels;  // x + 2¹⁶ · y
@@ -81,6 +132,19 @@ struct FoundPixels {
   std::uint32_t* original;
   std::uint32_t* end;  // [#faces + 1], where the next of a face goes
 };
+
+/// For each set of lanes, a bit for each: their numbers in order.
+constexpr std::array<std::array<std::uint16_t, kWide>, 256> make_lane_lists() {
+  std::array<std::array<std::uint16_t, kWide>, 256> lists{};
+  for (std::size_t set = 0; set < lists.size(); ++set) {
+    std::size_t n = 0;
+    for (std::uint16_t i = 0; i < kWide; ++i) {
+      if ((set >> i & 1) != 0) lists[set][n++] = i;
+    }
+  }
+  return lists;
+}
+alignas(64) constexpr auto kLaneLists = make_lane_lists();
 
 /// A column of blocks, in a view.
 struct BlockColumn {
@@ -107,21 +171,36 @@ FOVEA_WIDE std::size_t find_changes(const BlockColumn& column, std::span<const s
     const WideFloats bound = goes ? front.second_nearness : front.nearness;
     const WideInts wins = nearness > bound;
     const WideInts asks = ~wins & (goes | ((nearness == bound) & (local->face != 0)));
-    const auto bits = std::bit_cast<std::array<std::uint64_t, 4>>(
-        (reinterpret_cast<WideWords>(wins) & kLaneBits) |
-        (reinterpret_cast<WideWords>(asks) & (kLaneBits << 8)));
-    const std::uint64_t pair = bits[0] | bits[1] | bits[2] | bits[3];
-    const auto all = static_cast<std::uint32_t>(pair | pair >> 32);
+    std::uint32_t bits = 0;  // those that win, and 8 higher those that ask
+    gather_bits((reinterpret_cast<WideWords>(wins) & kLaneBits) |
+                    (reinterpret_cast<WideWords>(asks) & (kLaneBits << 8)),
+                bits);
     const std::uint32_t pixel = (static_cast<std::uint32_t>(y) << 16) + static_cast<std::uint32_t>(column.x);
-    for (std::uint32_t left = all >> 8 & within; left != 0; left &= left - 1)
+    for (std::uint32_t left = bits >> 8 & within; left != 0; left &= left - 1)
       unclear[unclear_count++] = pixel + static_cast<std::uint32_t>(std::countr_zero(left));
-    for (std::uint32_t left = all & within; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-      const std::uint32_t at = found.end[local->face[i]]++;
-      found.pixels[at] = pixel + i;
-      found.before[at] = front.value[i];
-      if (column.originals != nullptr)
-        found.original[at] = column.originals[static_cast<std::uint32_t>(y) * kWide + i];
+    // Face by face, mostly one or two: its pixels all at once, and what is beyond them will be overwritten.
+    // There is room for that, as no block before this one has had more than kWide of them.
+    for (std::uint32_t left = bits & within; left != 0;) {
+      const std::uint32_t face = local->face[std::countr_zero(left)];
+      std::uint32_t set = 0;
+      gather_bits(reinterpret_cast<WideWords>(local->face == face) & kLaneBits, set);
+      set &= left;
+      left ^= set;
+      using Narrow [[gnu::vector_size(16)]] = std::uint16_t;
+      Narrow narrow;
+      std::memcpy(&narrow, kLaneLists[set].data(), sizeof(narrow));
+      const WideWords lanes = __builtin_convertvector(narrow, WideWords);
+      const std::uint32_t at = found.end[face];
+      found.end[face] += static_cast<std::uint32_t>(std::popcount(set));
+      const WideWords pixels = lanes + pixel;
+      std::memcpy(found.pixels + at, &pixels, sizeof(pixels));
+      WideWords values;
+      pick(front.value, lanes, values);
+      std::memcpy(found.before + at, &values, sizeof(values));
+      if (column.originals == nullptr) continue;
+      std::memcpy(&values, column.originals + static_cast<std::uint32_t>(y) * kWide, sizeof(values));
+      pick(values, lanes, values);
+      std::memcpy(found.original + at, &values, sizeof(values));
     }
   }
   return unclear_count;
@@ -186,6 +265,7 @@ struct ViewCost::Scratch {
     bool is_seen = false;
     std::array<ScreenVertex, 3> corners;
     SampleBox box;
+    std::size_t first_rows = 0;  // of the columns of its box
     std::optional<FaceValues::Shading> shading;
   };
 
@@ -204,34 +284,40 @@ struct ViewCost::Scratch {
     return changed_by[std::min<std::size_t>(fragment.triangle, changed_by.size() - 1)] == collapse;
   }
 
-  /// Rows of a column of blocks.
-  struct Rows {
-    int begin = std::numeric_limits<int>::max(), end = 0;
-  };
   /// A view of the faces: which pixels they may cover, before or after.
   struct Sight {
-    void add(const SampleBox& box) {
-      for (int column = box.left / kColumn; column * kColumn < box.right; ++column) {
-        Rows& rows = columns[static_cast<std::size_t>(column)];
-        rows.begin = std::min(rows.begin, box.top);
-        rows.end = std::max(rows.end, box.bottom);
+    /// Adds those of a triangle. Returns where the rows of its columns begin.
+    std::size_t add(const std::array<ScreenVertex, 3>& v, const SampleBox& box) {
+      const int from = box.left / kColumn, to = (box.right - 1) / kColumn;
+      const std::size_t at = rows.size();
+      rows.resize(at + static_cast<std::size_t>(to - from + 1), {box.top, box.bottom});
+      if (from < to && WideTriangle::fits(v)) find_rows(v, box, rows.data() + at);
+      for (int column = from; column <= to; ++column) {
+        Rows& all = columns[static_cast<std::size_t>(column)];
+        const Rows& one = rows[at + static_cast<std::size_t>(column - from)];
+        if (one.begin >= one.end) continue;
+        all.begin = std::min(all.begin, one.begin);
+        all.end = std::max(all.end, one.end);
       }
-      first = std::min(first, box.left / kColumn);
-      last = std::max(last, (box.right - 1) / kColumn);
+      first = std::min(first, from);
+      last = std::max(last, to);
       top = std::min(top, box.top);
       bottom = std::max(bottom, box.bottom);
+      return at;
     }
     void clear() {
       for (int column = first; column <= last; ++column) columns[static_cast<std::size_t>(column)] = {};
       first = top = std::numeric_limits<int>::max();
       last = bottom = -1;
       going.clear();
+      rows.clear();
     }
-    int rows() const { return bottom - top; }
+    int height() const { return bottom - top; }
 
     std::vector<Seen> seen;            // [#faces] or more
     std::vector<std::uint32_t> going;  // those that are seen before, as shown
-    std::vector<Rows> columns;  // of blocks, of the whole view; those from first to last are covered
+    std::vector<Rows> rows;            // of the columns of each face's box
+    std::vector<Rows> columns;  // of all of them, for the whole view; those from first to last are covered
     int first = 0, last = -1, top = 0, bottom = 0;
   };
   Sight& sight(std::size_t view) { return sights[view % 2]; }
@@ -242,7 +328,7 @@ struct ViewCost::Scratch {
   std::vector<std::optional<FaceLook>> looks;  // [#faces]
   std::array<Sight, 2> sights;                 // of a view and the next
   // Of the pixels that a sight covers:
-  std::vector<LocalBlock> locals;      // [#columns][#rows]
+  std::vector<LocalBlock> locals;      // [#columns][height]
   std::vector<std::uint32_t> unclear;  // of a column
   // Of those that would change, face by face; for each there is room for all that it may cover:
   std::vector<std::uint32_t> pixels, before, original, after;
@@ -494,19 +580,19 @@ void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
   const auto corners = [&](const std::array<const ScreenVertex*, 3>& v) {
     return std::array<ScreenVertex, 3>{v[0][view], v[1][view], v[2][view]};
   };
-  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v, SampleBox& box) {
+  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v, Scratch::Seen& seen) {
     if (!ShownSurface::is_seen(v, local.double_sided, local.showing->mirrored)) return false;
-    box = sample_box(v, lists.rect());
-    if (box.empty()) return false;
-    sight.add(box);
+    seen.box = sample_box(v, lists.rect());
+    if (seen.box.empty()) return false;
+    seen.first_rows = sight.add(v, seen.box);
     return true;
   };
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
     const LocalFace& local = scratch.faces[i];
     Scratch::Seen& seen = sight.seen[i];
-    if (is_seen(local, corners(local.before), seen.box)) sight.going.push_back(local.shown);
+    if (is_seen(local, corners(local.before), seen)) sight.going.push_back(local.shown);
     seen.corners = corners(local.after);
-    seen.is_seen = !local.goes && is_seen(local, seen.corners, seen.box);
+    seen.is_seen = !local.goes && is_seen(local, seen.corners, seen);
     seen.shading.reset();
   }
   const ViewState& state = views_[view];
@@ -527,15 +613,12 @@ void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
 /// Finds what is nearest after the collapse of the faces around the edge, and makes room for what they show.
 void ViewCost::lay_faces(std::size_t view, Scratch& scratch) const {
   Scratch::Sight& sight = scratch.sight(view);
-  const auto rows = static_cast<std::size_t>(sight.rows());
-  scratch.locals.resize(static_cast<std::size_t>(sight.last - sight.first + 1) * rows);
-  LocalBlock nothing{};
-  nothing.nearness -= std::numeric_limits<float>::infinity();
+  const int height = sight.height();
+  scratch.locals.resize(static_cast<std::size_t>(sight.last - sight.first + 1) * static_cast<std::size_t>(height));
   LocalBlock* column_blocks = scratch.locals.data();
-  for (int column = sight.first; column <= sight.last; ++column, column_blocks += rows) {
+  for (int column = sight.first; column <= sight.last; ++column, column_blocks += height) {
     const auto [begin, end] = sight.columns[static_cast<std::size_t>(column)];
-    if (begin < end)
-      std::fill(column_blocks + (begin - sight.top), column_blocks + (end - sight.top), nothing);
+    if (begin < end) clear(column_blocks + (begin - sight.top), end - begin);
   }
   std::size_t room = 0;
   scratch.begin.assign(1, 0);
@@ -543,11 +626,12 @@ void ViewCost::lay_faces(std::size_t view, Scratch& scratch) const {
     scratch.begin.push_back(static_cast<std::uint32_t>(room));
     const Scratch::Seen& seen = sight.seen[i];
     if (!seen.is_seen) continue;
-    const int columns = (seen.box.right - 1) / kColumn - seen.box.left / kColumn + 1;
-    room += static_cast<std::size_t>(columns) * static_cast<std::size_t>(seen.box.bottom - seen.box.top) * kWide;
+    const auto columns = static_cast<std::size_t>((seen.box.right - 1) / kColumn - seen.box.left / kColumn + 1);
+    for (const Rows& rows : std::span(sight.rows).subspan(seen.first_rows, columns))
+      room += static_cast<std::size_t>(std::max(rows.end - rows.begin, 0)) * kWide;
     if (!scratch.faces[i].has_holes && WideTriangle::fits(seen.corners)) {
-      lay_face(WideTriangle(seen.corners, views_[view].lists.rect()), static_cast<std::uint32_t>(i + 1),
-               sight.first, sight.top, sight.rows(), scratch.locals.data());
+      lay_face(WideTriangle(seen.corners, views_[view].lists.rect()), sight.rows.data() + seen.first_rows,
+               static_cast<std::uint32_t>(i + 1), sight.first, sight.top, height, scratch.locals.data());
     } else {
       lay_spans(view, i, scratch);
     }
@@ -574,7 +658,7 @@ void ViewCost::lay_spans(std::size_t view, std::size_t i, Scratch& scratch) cons
                   return;
                 const int column = x / kColumn - sight.first;
                 LocalBlock& block =
-                    scratch.locals[static_cast<std::size_t>(column * sight.rows() + y - sight.top)];
+                    scratch.locals[static_cast<std::size_t>(column * sight.height() + y - sight.top)];
                 const auto lane = static_cast<std::size_t>(x % kColumn);
                 if (!(n > block.nearness[lane])) return;
                 block.nearness[lane] = n;
@@ -606,7 +690,7 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
   const FoundPixels found{scratch.pixels.data(), scratch.before.data(), scratch.original.data(),
                           scratch.end.data()};
   const LocalBlock* locals = scratch.locals.data();
-  for (int column = sight.first; column <= sight.last; ++column, locals += sight.rows()) {
+  for (int column = sight.first; column <= sight.last; ++column, locals += sight.height()) {
     const auto [begin, end] = sight.columns[static_cast<std::size_t>(column)];
     if (begin >= end) continue;
     const int x = column * kColumn;
