@@ -14,8 +14,8 @@
 #define FOVEA_WIDE
 #endif
 
-/// Before the definition of a part of such functions: it becomes one with each of them, so that a machine with
-/// AVX2 uses it there and nothing has to be called.
+/// Before the definition of a part of such functions: it becomes one with each of them, so that a machine
+/// with AVX2 uses it there and nothing has to be called.
 #if defined(__GNUC__)
 #define FOVEA_WIDE_PART inline __attribute__((always_inline))
 #else
@@ -47,8 +47,8 @@ FOVEA_WIDE_PART void take_sign_off(WideFloats& x) {
 FOVEA_WIDE_PART void gather_bits(const WideWords& lanes, std::uint32_t& out) {
   using Half [[gnu::vector_size(16)]] = std::uint32_t;
   using Pair [[gnu::vector_size(16)]] = std::uint64_t;
-  const Half half = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) |
-                    __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const Half half =
+      __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) | __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
   const Pair pair = reinterpret_cast<Pair>(half);
   const std::uint64_t both = pair[0] | pair[1];
   out = static_cast<std::uint32_t>(both | both >> 32);

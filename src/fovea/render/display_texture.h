@@ -106,7 +106,8 @@ class DisplayTexture {
   int left_out_ = 0;  // levels
 };
 
-FOVEA_WIDE_PART void DisplayTexture::at(std::size_t level, const WideFloats& u, const WideFloats& v, WideWords& out) const {
+FOVEA_WIDE_PART void DisplayTexture::at(std::size_t level, const WideFloats& u, const WideFloats& v,
+                                        WideWords& out) const {
   const Level& l = levels_[level];
   display::TexelPairs x, y;
   display::find_pairs(u, l.width, wrap_u_, x);

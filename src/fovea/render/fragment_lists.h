@@ -51,7 +51,8 @@ struct alignas(64) FrontBlock {
 /// list is at its longest.
 ///
 /// Pixels lie in blocks of kWide beside each other, those of a column below each other: a look at a few tens
-/// of rows stays within few pages of memory. The last column is filled up with pixels that no triangle covers.
+/// of rows stays within few pages of memory. The last column is filled up with pixels that no triangle
+/// covers.
 class FragmentLists {
  public:
   /// `background` is the value where there is no triangle.

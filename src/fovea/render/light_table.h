@@ -85,8 +85,8 @@ class LightTable {
   std::vector<Light> lights_;  // [side²] over the octahedron, unfolded
 };
 
-FOVEA_WIDE_PART void LightTable::at(const WideFloats& x, const WideFloats& y, const WideFloats& z, WideFloats& tinted,
-                    WideFloats& white) const {
+FOVEA_WIDE_PART void LightTable::at(const WideFloats& x, const WideFloats& y, const WideFloats& z,
+                                    WideFloats& tinted, WideFloats& white) const {
   static_assert(sizeof(Light) == 2 * sizeof(float));
   light_table::TablePlaces places;
   light_table::find_places(x, y, z, places);

@@ -3,12 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "fovea/base/wide.h"
 #include "fovea/render/scan_convert.h"
 
 namespace fovea {
+
+/// Pixels beside each other that are worked on together: those from a multiple of it on are a column.
+constexpr int kColumn = static_cast<int>(kWide);
+constexpr WideInts kLanes = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/// Rows [begin, end) of a column; by default none.
+struct RowRange {
+  int begin = std::numeric_limits<int>::max(), end = 0;
+  bool empty() const { return begin >= end; }
+};
 
 /// A triangle whose edge functions fit into 32 bits, so that many samples can be tried at once: those of
 /// `for_spans`, without a loop that depends on where a row of them begins and ends.
@@ -44,5 +55,9 @@ struct WideTriangle {
     }
   }
 };
+
+/// In which rows a triangle that fits may cover samples of each column, of those that its box touches: little
+/// more than where it does. The rectangle begins at 0, 0.
+void find_rows(const std::array<ScreenVertex, 3>& v, const SampleBox& box, RowRange* out);
 
 }  // namespace fovea

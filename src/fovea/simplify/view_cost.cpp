@@ -36,58 +36,13 @@ struct alignas(64) LocalBlock {
   WideFloats nearness;  // of the nearest
   WideWords face;       // counted from 1; 0: none
 };
-constexpr int kColumn = static_cast<int>(kWide);  // pixels
 
-constexpr WideInts kLanes = {0, 1, 2, 3, 4, 5, 6, 7};
 constexpr WideWords kLaneBits = {1, 2, 4, 8, 16, 32, 64, 128};
 
-/// Rows of a column of blocks.
-struct Rows {
-  int begin = std::numeric_limits<int>::max(), end = 0;
-};
-
-/// In which rows a triangle that fits may cover pixels of each column of its box: it is cut at the columns'
-/// borders.
-FOVEA_WIDE void find_rows(const std::array<ScreenVertex, 3>& v, const SampleBox& box, Rows* out) {
-  constexpr std::int32_t kSide = kColumn * kSubsamples, kHalf = kSubsamples / 2;
-  constexpr float kFar = 1 << 30;
-  const int first = box.left / kColumn, count = (box.right - 1) / kColumn - first + 1;
-  for (int begin = 0; begin < count; begin += kColumn) {
-    WideFloats left, lowest = WideFloats{} + kFar, highest = WideFloats{} - kFar;
-    // Counted from a corner, so that nothing is rounded by much.
-    const WideInts start = (kLanes + (first + begin)) * kSide - v[0].x;
-    convert(start, left);
-    const WideFloats right = left + static_cast<float>(kSide);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const ScreenVertex &p = v[k], &q = v[(k + 1) % 3];
-      const auto px = static_cast<float>(p.x - v[0].x), py = static_cast<float>(p.y - v[0].y);
-      const auto dx = static_cast<float>(q.x - p.x), dy = static_cast<float>(q.y - p.y);
-      const float low_x = std::min(px, px + dx), high_x = std::max(px, px + dx);
-      const float slope = dx != 0 ? dy / dx : 0;
-      const WideFloats from = left > low_x ? left : low_x, to = right < high_x ? right : high_x;
-      // An upright edge has its corners in other edges, too.
-      const WideFloats at_from = py + (from - px) * slope, at_to = py + (to - px) * slope;
-      const WideInts is_there = from <= to;
-      const WideFloats low = at_from < at_to ? at_from : at_to, high = at_from < at_to ? at_to : at_from;
-      lowest = is_there & (low < lowest) ? low : lowest;
-      highest = is_there & (high > highest) ? high : highest;
-    }
-    constexpr std::int32_t kMargin = 4;  // more than is rounded
-    WideInts low, high;
-    convert(lowest, low);
-    convert(highest, high);
-    low = (low + (v[0].y - kHalf - kMargin)) >> kSubsampleBits;
-    high = ((high + (v[0].y - kHalf + kMargin)) >> kSubsampleBits) + 1;
-    low = low > box.top ? low : box.top;
-    high = high < box.bottom ? high : box.bottom;
-    for (int i = 0; i < std::min(count - begin, kColumn); ++i) out[begin + i] = {low[i], high[i]};
-  }
-}
-
-/// Notes a face where it is nearer than what is noted. `rows` are those of the columns of its box; `blocks` is
-/// that of the first pixels of the sight, `height` rows of a column after each other.
-FOVEA_WIDE void lay_face(const WideTriangle& triangle, const Rows* rows, std::uint32_t face, int first_column,
-                         int top, int height, LocalBlock* blocks) {
+/// Notes a face where it is nearer than what is noted. `rows` are those of the columns of its box; `blocks`
+/// is that of the first pixels of the sight, `height` rows of a column after each other.
+FOVEA_WIDE void lay_face(const WideTriangle& triangle, const RowRange* rows, std::uint32_t face,
+                         int first_column, int top, int height, LocalBlock* blocks) {
   const SampleBox box = triangle.box;
   const WideFloats low = WideFloats{} + triangle.plane.low, high = WideFloats{} + triangle.plane.high;
   const WideWords faces = WideWords{} + face;
@@ -293,8 +248,8 @@ struct ViewCost::Scratch {
       rows.resize(at + static_cast<std::size_t>(to - from + 1), {box.top, box.bottom});
       if (from < to && WideTriangle::fits(v)) find_rows(v, box, rows.data() + at);
       for (int column = from; column <= to; ++column) {
-        Rows& all = columns[static_cast<std::size_t>(column)];
-        const Rows& one = rows[at + static_cast<std::size_t>(column - from)];
+        RowRange& all = columns[static_cast<std::size_t>(column)];
+        const RowRange& one = rows[at + static_cast<std::size_t>(column - from)];
         if (one.begin >= one.end) continue;
         all.begin = std::min(all.begin, one.begin);
         all.end = std::max(all.end, one.end);
@@ -316,8 +271,9 @@ struct ViewCost::Scratch {
 
     std::vector<Seen> seen;            // [#faces] or more
     std::vector<std::uint32_t> going;  // those that are seen before, as shown
-    std::vector<Rows> rows;            // of the columns of each face's box
-    std::vector<Rows> columns;  // of all of them, for the whole view; those from first to last are covered
+    std::vector<RowRange> rows;        // of the columns of each face's box
+    std::vector<RowRange>
+        columns;  // of all of them, for the whole view; those from first to last are covered
     int first = 0, last = -1, top = 0, bottom = 0;
   };
   Sight& sight(std::size_t view) { return sights[view % 2]; }
@@ -384,8 +340,8 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
 }
 
 std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
-  auto scratch = std::make_shared<Scratch>(
-      shown_.face_count(), measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
+  auto scratch = std::make_shared<Scratch>(shown_.face_count(),
+                                           measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
   const FragmentLists& lists = views_[0].lists;
   for (Scratch::Sight& sight : scratch->sights)
     sight.columns.resize(rounded_up(static_cast<std::size_t>(lists.width())) / kWide);
@@ -424,10 +380,9 @@ void ViewCost::take_out(std::size_t v, const ShownInstance& showing, std::uint32
   const std::array<ScreenVertex, 3> at = corners(v, showing, f);
   if (!ShownSurface::is_seen(at, shown_.is_double_sided(f), showing.mirrored)) return;
   ViewState& view = views_[v];
-  view.lists.remove(shown_.shown_face(showing, f), at,
-                    [&](std::size_t, const Fragment& before, const Fragment& after) {
-                      swap_value(view, before, after);
-                    });
+  view.lists.remove(
+      shown_.shown_face(showing, f), at,
+      [&](std::size_t, const Fragment& before, const Fragment& after) { swap_value(view, before, after); });
 }
 
 /// Calls change(view, showing, face) for all of them, views in parallel if there is enough to do.
@@ -523,7 +478,8 @@ void ViewCost::add_change(double limit, Scratch& scratch, PartialChange& part) c
     const std::size_t v = part.views++;
     if (!is_whole(part)) look_at(part.views, scratch);  // while its pixels come, this view is looked at
     if (scratch.sight(v).last >= 0)
-      part.sum += measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
+      part.sum +=
+          measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
   } while (!is_whole(part) && amount(part) <= limit);
 }
 
@@ -572,7 +528,8 @@ ViewCost::LocalFace ViewCost::local_face(const ShownInstance& showing, std::uint
   return local;
 }
 
-/// Notes how a view sees the faces and what they may cover, before and after, and starts to load these pixels.
+/// Notes how a view sees the faces and what they may cover, before and after, and starts to load these
+/// pixels.
 void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
   const FragmentLists& lists = views_[view].lists;
   Scratch::Sight& sight = scratch.sight(view);
@@ -580,7 +537,8 @@ void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
   const auto corners = [&](const std::array<const ScreenVertex*, 3>& v) {
     return std::array<ScreenVertex, 3>{v[0][view], v[1][view], v[2][view]};
   };
-  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v, Scratch::Seen& seen) {
+  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v,
+                           Scratch::Seen& seen) {
     if (!ShownSurface::is_seen(v, local.double_sided, local.showing->mirrored)) return false;
     seen.box = sample_box(v, lists.rect());
     if (seen.box.empty()) return false;
@@ -605,8 +563,7 @@ void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
     }
     if (state.original.empty()) continue;
     constexpr int kPerLine = 2;
-    for (int y = begin; y < end; y += kPerLine)
-      prefetch(&state.original[lists.pixel(column * kColumn, y)]);
+    for (int y = begin; y < end; y += kPerLine) prefetch(&state.original[lists.pixel(column * kColumn, y)]);
   }
 }
 
@@ -614,7 +571,8 @@ void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
 void ViewCost::lay_faces(std::size_t view, Scratch& scratch) const {
   Scratch::Sight& sight = scratch.sight(view);
   const int height = sight.height();
-  scratch.locals.resize(static_cast<std::size_t>(sight.last - sight.first + 1) * static_cast<std::size_t>(height));
+  scratch.locals.resize(static_cast<std::size_t>(sight.last - sight.first + 1) *
+                        static_cast<std::size_t>(height));
   LocalBlock* column_blocks = scratch.locals.data();
   for (int column = sight.first; column <= sight.last; ++column, column_blocks += height) {
     const auto [begin, end] = sight.columns[static_cast<std::size_t>(column)];
@@ -626,8 +584,9 @@ void ViewCost::lay_faces(std::size_t view, Scratch& scratch) const {
     scratch.begin.push_back(static_cast<std::uint32_t>(room));
     const Scratch::Seen& seen = sight.seen[i];
     if (!seen.is_seen) continue;
-    const auto columns = static_cast<std::size_t>((seen.box.right - 1) / kColumn - seen.box.left / kColumn + 1);
-    for (const Rows& rows : std::span(sight.rows).subspan(seen.first_rows, columns))
+    const auto columns =
+        static_cast<std::size_t>((seen.box.right - 1) / kColumn - seen.box.left / kColumn + 1);
+    for (const RowRange& rows : std::span(sight.rows).subspan(seen.first_rows, columns))
       room += static_cast<std::size_t>(std::max(rows.end - rows.begin, 0)) * kWide;
     if (!scratch.faces[i].has_holes && WideTriangle::fits(seen.corners)) {
       lay_face(WideTriangle(seen.corners, views_[view].lists.rect()), sight.rows.data() + seen.first_rows,
@@ -679,9 +638,9 @@ const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::size_t i, st
   return *seen.shading;
 }
 
-/// Calls change(n, values before, values after, originals) for groups of n pixels in which something else would
-/// be in front. Arrays, which it may write to, have room for a multiple of kWide and are filled up with the
-/// last pixel's; originals are for images.
+/// Calls change(n, values before, values after, originals) for groups of n pixels in which something else
+/// would be in front. Arrays, which it may write to, have room for a multiple of kWide and are filled up with
+/// the last pixel's; originals are for images.
 template <class Change>
 void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) const {
   const ViewState& view = views_[v];
@@ -696,8 +655,9 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
     const int x = column * kColumn;
     const std::uint32_t* const originals =
         view.original.empty() ? nullptr : view.original.data() + view.lists.pixel(x, 0);
-    const BlockColumn pixels{view.lists.blocks(column), locals + (begin - sight.top), originals, begin, end, x,
-                        view.lists.width() - x};
+    const BlockColumn pixels{
+        view.lists.blocks(column), locals + (begin - sight.top), originals, begin, end, x,
+        view.lists.width() - x};
     const std::size_t unclear = find_changes(pixels, sight.going, found, scratch.unclear.data());
     for (std::size_t n = 0; n < unclear; ++n) {
       const std::uint32_t pixel = scratch.unclear[n];
@@ -720,8 +680,8 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
   }
 }
 
-/// Of a pixel in which nothing is in front without doubt: it shows a face of the collapse now, or one of equal
-/// nearness after it.
+/// Of a pixel in which nothing is in front without doubt: it shows a face of the collapse now, or one of
+/// equal nearness after it.
 template <class Change>
 void ViewCost::ask(std::size_t v, int x, int y, float nearness, std::uint32_t face, Scratch& scratch,
                    Change&& change) const {

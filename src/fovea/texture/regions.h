@@ -63,7 +63,8 @@ class PartRegions {
   /// and its sampler's wrapping are applied here, as in pictures without filters. What is then not finite, or
   /// beyond a million, counts as 0.
   void texels_at(const WideFloats& u, const WideFloats& v, WideWords& out) const;
-  /// Apart from the above, as most of the time goes into waiting for it: `prefetch` it as soon as it is known.
+  /// Apart from the above, as most of the time goes into waiting for it: `prefetch` it as soon as it is
+  /// known.
   std::uint32_t region_of_texel(std::uint32_t texel) const { return first_ + texel_label_[texel]; }
   void prefetch_texel(std::uint32_t texel) const { prefetch(&texel_label_[texel]); }
 
