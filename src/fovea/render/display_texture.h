@@ -25,7 +25,7 @@ struct TexelPairs {
 
 FOVEA_WIDE_PART void find_pairs(const WideFloats& coordinates, int count, Wrap wrap, TexelPairs& out) {
   // What is no number is 0, too.
-  WideFloats x = (coordinates < 1e6f) & (coordinates > -1e6f) ? coordinates : 0.0f;
+  WideFloats x = ((coordinates < 1e6f) & (coordinates > -1e6f)) ? coordinates : 0.0f;
   if (wrap == Wrap::mirror) x *= 0.5f;
   if (wrap != Wrap::clamp) {
     WideInts cut;

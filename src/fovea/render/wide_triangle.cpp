@@ -24,8 +24,8 @@ FOVEA_WIDE void find_rows(const std::array<ScreenVertex, 3>& v, const SampleBox&
       const WideFloats at_from = py + (from - px) * slope, at_to = py + (to - px) * slope;
       const WideInts is_there = from <= to;
       const WideFloats low = at_from < at_to ? at_from : at_to, high = at_from < at_to ? at_to : at_from;
-      lowest = is_there & (low < lowest) ? low : lowest;
-      highest = is_there & (high > highest) ? high : highest;
+      lowest = (is_there & (low < lowest)) ? low : lowest;
+      highest = (is_there & (high > highest)) ? high : highest;
     }
     constexpr std::int32_t kMargin = 4;  // more than is rounded
     WideInts low, high;

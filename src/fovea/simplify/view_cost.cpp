@@ -108,7 +108,12 @@ struct BlockColumn {
   const std::uint32_t* originals;  // of pixels; null: none
   int begin, end;                  // rows
   int x, width;                    // pixels of the view
+  // Where many triangles go, what says it of each, see Scratch; else empty.
+  std::span<const std::uint32_t> changed_by;
+  std::uint32_t collapse;
 };
+/// More than go around an edge that is shown once.
+constexpr std::size_t kMany = 32;
 
 /// Adds to what is found where a face would be in front without doubt; in `unclear` notes the pixels about
 /// which more has to be asked. `going` are the triangles that the collapse changes. Returns how many pixels
@@ -121,7 +126,14 @@ FOVEA_WIDE std::size_t find_changes(const BlockColumn& column, std::span<const s
   for (int y = column.begin; y < column.end; ++y, ++local) {
     const FrontBlock& front = column.fronts[y];
     WideInts goes{};
-    for (const std::uint32_t t : going) goes |= front.triangle == t;
+    if (column.changed_by.empty()) {
+      for (const std::uint32_t t : going) goes |= front.triangle == t;
+    } else {
+      for (std::size_t i = 0; i < kWide; ++i) {
+        const std::size_t t = std::min<std::size_t>(front.triangle[i], column.changed_by.size() - 1);
+        goes[i] = column.changed_by[t] == column.collapse ? -1 : 0;
+      }
+    }
     const WideFloats nearness = local->nearness;
     const WideFloats bound = goes ? front.second_nearness : front.nearness;
     const WideInts wins = nearness > bound;
@@ -166,14 +178,16 @@ FOVEA_WIDE std::size_t find_changes(const BlockColumn& column, std::span<const s
 FOVEA_WIDE std::size_t keep_different(std::size_t n, std::uint32_t* before, std::uint32_t* after) {
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < n; begin += kWide) {
+    WideWords from, to;
+    std::memcpy(&from, before + begin, sizeof(from));
+    std::memcpy(&to, after + begin, sizeof(to));
     std::uint32_t differ = 0;
-    for (std::size_t i = 0; i < kWide; ++i) differ |= before[begin + i] ^ after[begin + i];
-    if (differ == 0) continue;
-    for (std::size_t k = begin; k < std::min(begin + kWide, n); ++k) {
-      const std::uint32_t from = before[k], to = after[k];
-      before[kept] = from;
-      after[kept] = to;
-      kept += from != to;
+    gather_bits(reinterpret_cast<WideWords>(from != to) & kLaneBits, differ);
+    if (n - begin < kWide) differ &= (1u << (n - begin)) - 1;
+    for (; differ != 0; differ &= differ - 1) {
+      const std::size_t k = begin + static_cast<std::size_t>(std::countr_zero(differ));
+      before[kept] = before[k];
+      after[kept++] = after[k];
     }
   }
   return kept;
@@ -648,6 +662,8 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
   lay_faces(v, scratch);
   const FoundPixels found{scratch.pixels.data(), scratch.before.data(), scratch.original.data(),
                           scratch.end.data()};
+  std::span<const std::uint32_t> changed_by;
+  if (sight.going.size() > kMany) changed_by = scratch.changed_by;
   const LocalBlock* locals = scratch.locals.data();
   for (int column = sight.first; column <= sight.last; ++column, locals += sight.height()) {
     const auto [begin, end] = sight.columns[static_cast<std::size_t>(column)];
@@ -655,9 +671,15 @@ void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) con
     const int x = column * kColumn;
     const std::uint32_t* const originals =
         view.original.empty() ? nullptr : view.original.data() + view.lists.pixel(x, 0);
-    const BlockColumn pixels{
-        view.lists.blocks(column), locals + (begin - sight.top), originals, begin, end, x,
-        view.lists.width() - x};
+    const BlockColumn pixels{view.lists.blocks(column),
+                             locals + (begin - sight.top),
+                             originals,
+                             begin,
+                             end,
+                             x,
+                             view.lists.width() - x,
+                             changed_by,
+                             scratch.collapse};
     const std::size_t unclear = find_changes(pixels, sight.going, found, scratch.unclear.data());
     for (std::size_t n = 0; n < unclear; ++n) {
       const std::uint32_t pixel = scratch.unclear[n];

@@ -32,7 +32,7 @@ struct UvRow {
 FOVEA_WIDE_PART void find_texels(const WideFloats& u, const WideFloats& v, UvRow row, int size, Wrap wrap,
                                  WideInts& out) {
   WideFloats x = row.u * u + row.v * v + row.offset;
-  x = (x < kMostTurns) & (x > -kMostTurns) ? x : 0.0f;
+  x = ((x < kMostTurns) & (x > -kMostTurns)) ? x : 0.0f;
   if (wrap == Wrap::mirror) x *= 0.5f;
   if (wrap != Wrap::clamp) {
     WideInts cut;
