@@ -144,7 +144,7 @@ void expect_literal(const FragmentLists& lists, int x, int y, const Triangles& t
 /// The nearest fragment of each pixel, kept up to date by what the lists say of their changes.
 class Front {
  public:
-  explicit Front(const FragmentLists& lists) : lists_(lists), image_(pixels()) {}
+  explicit Front(const FragmentLists& lists) : lists_(lists), image_(lists.pixel_count()) {}
 
   auto note() {
     return [this](std::size_t pixel, const Fragment& before, const Fragment& after) {
@@ -165,9 +165,6 @@ class Front {
  private:
   static std::optional<Fragment> copy(const Fragment& fragment) {
     return fragment.triangle == kInvalid ? std::nullopt : std::optional(fragment);
-  }
-  std::size_t pixels() const {
-    return static_cast<std::size_t>(lists_.width()) * static_cast<std::size_t>(lists_.height());
   }
 
   const FragmentLists& lists_;
@@ -255,9 +252,9 @@ TEST(FragmentLists, SayNothingOfWhatIsHidden) {
 TEST(FragmentLists, OfEquallyNearTheSmallerNumberIsInFront) {
   FragmentLists lists(3, 2);
   for (const std::uint32_t t : {5u, 9u, 2u, 7u}) lists.insert(t, wall(1), kSolid);
-  for (std::size_t p = 0; p < 6; ++p) {
+  for (int p = 0; p < 6; ++p) {
     std::vector<std::uint32_t> order;
-    for (const Fragment& fragment : lists.at(p)) order.push_back(fragment.triangle);
+    for (const Fragment& fragment : lists.at(lists.pixel(p % 3, p / 3))) order.push_back(fragment.triangle);
     EXPECT_EQ(order, (std::vector<std::uint32_t>{2, 5, 7, 9}));
   }
 }
@@ -320,7 +317,7 @@ TEST(FragmentLists, SizeCountsTheFragments) {
   for (int i = 0; i < 200; ++i) {
     busy.change();
     std::size_t count = 0;
-    for (std::size_t p = 0; p < std::size_t{24} * 24; ++p) count += busy.lists().at(p).size();
+    for (std::size_t p = 0; p < busy.lists().pixel_count(); ++p) count += busy.lists().at(p).size();
     ASSERT_EQ(busy.lists().size(), count);
   }
 }
@@ -329,13 +326,13 @@ TEST(FragmentLists, TakeAFewTimesWhatTheirFragmentsNeed) {
   EXPECT_EQ(sizeof(Fragment), 12u);
   constexpr std::size_t kPixels = std::size_t{64} * 64;
   FragmentLists lists(64, 64);
-  EXPECT_EQ(lists.bytes(), 40 * kPixels);
+  EXPECT_EQ(lists.bytes(), 32 * kPixels);
   for (std::uint32_t t = 0; t < 40; ++t) {
     lists.insert(t, wall(static_cast<float>(t % 7)), kSolid);
     const std::size_t behind = lists.size() - std::min(lists.size(), 2 * kPixels);
-    EXPECT_GE(lists.bytes(), 40 * kPixels + 12 * behind);
+    EXPECT_GE(lists.bytes(), 32 * kPixels + 12 * behind);
     // Rooms of 1, 2, 4 … are at most four times the fragments; the pool grows by doubling.
-    EXPECT_LE(lists.bytes(), 40 * kPixels + 9 * 12 * behind);
+    EXPECT_LE(lists.bytes(), 32 * kPixels + 9 * 12 * behind);
   }
 }
 

@@ -3,8 +3,8 @@
 namespace fovea {
 
 std::size_t FragmentLists::bytes() const {
-  std::size_t sum =
-      pool_.capacity() * sizeof(Fragment) + fronts_.size() * (sizeof(List) + sizeof(FrontPixel));
+  std::size_t sum = pool_.capacity() * sizeof(Fragment) + behind_.size() * sizeof(List) +
+                    fronts_.size() * (sizeof(FrontBlock) + sizeof(SecondBlock));
   for (const auto& rooms : free_) sum += rooms.capacity() * sizeof(rooms[0]);
   return sum;
 }
@@ -34,7 +34,7 @@ void FragmentLists::resize(List& list, std::uint32_t size) {
 
 std::vector<Fragment> FragmentLists::at(std::size_t pixel) const {
   std::vector<Fragment> all;
-  for (const Fragment& fragment : {fronts_[pixel].first, fronts_[pixel].second}) {
+  for (const Fragment& fragment : {first(pixel), second(pixel)}) {
     if (fragment.triangle != kInvalid) all.push_back(fragment);
   }
   const std::span<const Fragment> others = behind(pixel);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/base/wide.h"
 #include "fovea/model/ids.h"
 #include "fovea/render/scan_convert.h"
 
@@ -27,20 +28,31 @@ struct Fragment {
   friend bool operator==(const Fragment&, const Fragment&) = default;
 };
 
-/// What most looks at a pixel need, in half a cache line.
-struct alignas(32) FrontPixel {
-  Fragment first, second;                ///< The nearest; the background where there are fewer.
-  std::array<std::uint32_t, 2> notes{};  ///< The caller's own.
+/// The nearest fragments of a pixel; the background where there are fewer.
+struct FrontPixel {
+  Fragment first, second;
+};
+
+/// What most looks at kWide pixels beside each other need, in two cache lines: the nearest fragment, and how
+/// near the second is.
+struct alignas(64) FrontBlock {
+  WideFloats nearness;
+  WideWords triangle, value;
+  WideFloats second_nearness;
 };
 
 /// All triangles behind each pixel of a view, nearest first, hidden ones among them: what is visible after a
 /// triangle goes is the next in the list, and nothing has to be drawn again.
 ///
-/// The lists depend on the triangles that are in them, not on the order in which they came. A pixel takes 40
+/// The lists depend on the triangles that are in them, not on the order in which they came. A pixel takes 32
 /// bytes, its two nearest fragments among them, each further fragment 12. These lie in one pool in rooms of
 /// powers of two, so that they take at most twice what they need. Rooms that they have outgrown wait for
 /// others: all together takes about two to four times, at most nine times what the fragments need when each
 /// list is at its longest.
+///
+/// Pixels lie in blocks of kWide beside each other, those of a column below each other: a look at a few tens
+/// of rows stays within few pages of memory. The last column is filled up with pixels that no triangle
+/// covers.
 class FragmentLists {
  public:
   /// `background` is the value where there is no triangle.
@@ -48,27 +60,42 @@ class FragmentLists {
       : width_(width),
         height_(height),
         background_{-std::numeric_limits<float>::infinity(), kInvalid, background},
-        fronts_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-                {background_, background_, {}}),
-        behind_(fronts_.size()),
-        row_(static_cast<std::size_t>(width)) {}
+        fronts_((static_cast<std::size_t>(width) + kWide - 1) / kWide * static_cast<std::size_t>(height)),
+        seconds_(fronts_.size()),
+        behind_(fronts_.size() * kWide),
+        row_(static_cast<std::size_t>(width)) {
+    for (std::size_t p = 0; p < pixel_count(); ++p) set_first(p, background_), set_second(p, background_);
+  }
 
   int width() const { return width_; }
   int height() const { return height_; }
   SampleRect rect() const { return {0, 0, width_, height_}; }
+  /// The number of a pixel, below `pixel_count`.
   std::size_t pixel(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    const auto column = static_cast<std::size_t>(x);
+    return (column / kWide * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y)) * kWide +
+           column % kWide;
   }
+  /// With those that fill up.
+  std::size_t pixel_count() const { return behind_.size(); }
 
   /// The nearest fragments of a pixel; the background is infinitely far and without a triangle.
-  const FrontPixel& front(std::size_t pixel) const { return fronts_[pixel]; }
+  FrontPixel front(std::size_t pixel) const { return {first(pixel), second(pixel)}; }
+  Fragment first(std::size_t pixel) const {
+    const FrontBlock& block = fronts_[pixel / kWide];
+    const std::size_t i = pixel % kWide;
+    return {block.nearness[i], block.triangle[i], block.value[i]};
+  }
+  /// Those of the pixels from x = column · kWide on in all rows. [#rows]
+  const FrontBlock* blocks(int column) const {
+    return fronts_.data() + static_cast<std::size_t>(column) * static_cast<std::size_t>(height_);
+  }
   /// Those behind them, nearest first. Valid until something is inserted.
   std::span<const Fragment> behind(std::size_t pixel) const {
     return {pool_.data() + behind_[pixel].begin, behind_[pixel].size};
   }
   /// All of them, nearest first.
   std::vector<Fragment> at(std::size_t pixel) const;
-  std::array<std::uint32_t, 2>& notes(std::size_t pixel) { return fronts_[pixel].notes; }
   const Fragment& background() const { return background_; }
   /// How many fragments there are in all.
   std::size_t size() const { return size_; }
@@ -89,9 +116,8 @@ class FragmentLists {
         const Fragment fragment{nearness, triangle, row_[static_cast<std::size_t>(x - x0)]};
         if (fragment.value == kHole) return;
         const std::size_t p = pixel(x, y);
-        const Fragment before = fronts_[p].first;
-        add(p, fragment);
-        if (fronts_[p].first.triangle == triangle) changed(p, before, fragment);
+        const Fragment before = first(p);
+        if (add(p, fragment)) changed(p, before, fragment);
       });
     });
   }
@@ -106,9 +132,9 @@ class FragmentLists {
     for_spans(v, rect(), [&](int y, int x0, int x1, const NearnessPlane&) {
       for (int x = x0; x < x1; ++x) {
         const std::size_t p = pixel(x, y);
-        const Fragment front = fronts_[p].first;
+        const Fragment front = first(p);
         drop(p, triangle);
-        if (front.triangle == triangle) changed(p, front, fronts_[p].first);
+        if (front.triangle == triangle) changed(p, front, first(p));
       }
     });
   }
@@ -125,7 +151,31 @@ class FragmentLists {
     return static_cast<std::size_t>(std::countr_zero(std::bit_ceil(size)));
   }
 
-  void add(std::size_t pixel, const Fragment& fragment);
+  /// The rest of what is second, beside its nearness.
+  struct SecondBlock {
+    WideWords triangle, value;
+  };
+
+  Fragment second(std::size_t pixel) const {
+    const SecondBlock& block = seconds_[pixel / kWide];
+    const std::size_t i = pixel % kWide;
+    return {fronts_[pixel / kWide].second_nearness[i], block.triangle[i], block.value[i]};
+  }
+  void set_first(std::size_t pixel, const Fragment& fragment) {
+    FrontBlock& block = fronts_[pixel / kWide];
+    const std::size_t i = pixel % kWide;
+    block.nearness[i] = fragment.nearness;
+    block.triangle[i] = fragment.triangle;
+    block.value[i] = fragment.value;
+  }
+  void set_second(std::size_t pixel, const Fragment& fragment) {
+    SecondBlock& block = seconds_[pixel / kWide];
+    const std::size_t i = pixel % kWide;
+    fronts_[pixel / kWide].second_nearness[i] = fragment.nearness;
+    block.triangle[i] = fragment.triangle;
+    block.value[i] = fragment.value;
+  }
+  bool add(std::size_t pixel, const Fragment& fragment);
   void drop(std::size_t pixel, std::uint32_t triangle);
   void add_behind(std::size_t pixel, const Fragment& fragment);
   bool drop_behind(std::size_t pixel, std::uint32_t triangle);
@@ -135,37 +185,41 @@ class FragmentLists {
   int width_, height_;
   std::size_t size_ = 0;
   Fragment background_;
-  std::vector<FrontPixel> fronts_;  // [#pixels]
-  std::vector<List> behind_;        // [#pixels], what comes after the two in front
-  std::vector<std::uint32_t> row_;  // scratch of insert
+  std::vector<FrontBlock> fronts_;    // [#blocks]
+  std::vector<SecondBlock> seconds_;  // [#blocks]
+  std::vector<List> behind_;          // [#pixels], what comes after the two in front
+  std::vector<std::uint32_t> row_;    // scratch of insert
   std::vector<Fragment> pool_;
   std::array<std::vector<std::uint32_t>, 32> free_;  // [log2 of room], where rooms begin
 };
 
-inline void FragmentLists::add(std::size_t pixel, const Fragment& fragment) {
+/// Whether it is now in front.
+inline bool FragmentLists::add(std::size_t pixel, const Fragment& fragment) {
   const auto is_free = [](const Fragment& place) { return place.triangle == kInvalid; };
-  FrontPixel& front = fronts_[pixel];
+  const Fragment second = this->second(pixel);
   ++size_;
-  if (!is_free(front.second) && !fragment.is_before(front.second)) {
+  if (!is_free(second) && !fragment.is_before(second)) {
     add_behind(pixel, fragment);
-    return;
+    return false;
   }
-  if (!is_free(front.second)) add_behind(pixel, front.second);
-  const bool is_first = is_free(front.first) || fragment.is_before(front.first);
-  front.second = is_first ? front.first : fragment;
-  if (is_first) front.first = fragment;
+  if (!is_free(second)) add_behind(pixel, second);
+  const Fragment first = this->first(pixel);
+  const bool is_first = is_free(first) || fragment.is_before(first);
+  set_second(pixel, is_first ? first : fragment);
+  if (is_first) set_first(pixel, fragment);
+  return is_first;
 }
 
 inline void FragmentLists::drop(std::size_t pixel, std::uint32_t triangle) {
-  FrontPixel& front = fronts_[pixel];
-  if (front.first.triangle == triangle) {
-    front.first = front.second;
-  } else if (front.second.triangle != triangle) {
+  const Fragment second = this->second(pixel);
+  if (fronts_[pixel / kWide].triangle[pixel % kWide] == triangle) {
+    set_first(pixel, second);
+  } else if (second.triangle != triangle) {
     // Or a hole.
-    if (front.second.triangle != kInvalid && drop_behind(pixel, triangle)) --size_;
+    if (second.triangle != kInvalid && drop_behind(pixel, triangle)) --size_;
     return;
   }
-  if (front.second.triangle != kInvalid) front.second = take_behind(pixel);
+  if (second.triangle != kInvalid) set_second(pixel, take_behind(pixel));
   --size_;
 }
 

@@ -18,6 +18,27 @@ struct SampleRect {
   int width = 0, height = 0;
 };
 
+/// Samples [left, right) × [top, bottom), counted from the corner of a rectangle.
+struct SampleBox {
+  int left = 0, top = 0, right = 0, bottom = 0;
+  bool empty() const { return left >= right || top >= bottom; }
+};
+
+/// The samples of a rectangle that are within a triangle's extent.
+inline SampleBox sample_box(const std::array<ScreenVertex, 3>& v, const SampleRect& rect) {
+  const auto [xl, xh] = std::minmax({v[0].x, v[1].x, v[2].x});
+  const auto [yl, yh] = std::minmax({v[0].y, v[1].y, v[2].y});
+  constexpr std::int64_t kHalf = kSubsamples / 2;
+  const auto first = [](std::int64_t low, int begin) {
+    return static_cast<int>(std::max<std::int64_t>((low + kHalf - 1) >> kSubsampleBits, begin) - begin);
+  };
+  const auto last = [](std::int64_t high, int begin, int count) {
+    return static_cast<int>(std::min<std::int64_t>(((high - kHalf) >> kSubsampleBits) - begin, count - 1));
+  };
+  return {first(xl, rect.left), first(yl, rect.top), last(xh, rect.left, rect.width) + 1,
+          last(yh, rect.top, rect.height) + 1};
+}
+
 /// Nearness of a triangle over the samples of a rectangle; never beyond that of its corners.
 struct NearnessPlane {
   double at_0 = 0, dx = 0, dy = 0;
@@ -101,23 +122,13 @@ void for_spans(std::array<ScreenVertex, 3> v, const SampleRect& rect, F&& span) 
     std::swap(v[1], v[2]);
     area = -area;
   }
-  const auto [xl, xh] = std::minmax({v[0].x, v[1].x, v[2].x});
-  const auto [yl, yh] = std::minmax({v[0].y, v[1].y, v[2].y});
-  constexpr std::int64_t kHalf = kSubsamples / 2;
-  const auto first = [](std::int64_t low, int begin) {
-    return static_cast<int>(std::max<std::int64_t>((low + kHalf - 1) >> kSubsampleBits, begin) - begin);
-  };
-  const auto last = [](std::int64_t high, int begin, int count) {
-    return static_cast<int>(std::min<std::int64_t>(((high - kHalf) >> kSubsampleBits) - begin, count - 1));
-  };
-  const int left = first(xl, rect.left), right = last(xh, rect.left, rect.width) + 1;
-  const int top = first(yl, rect.top), bottom = last(yh, rect.top, rect.height) + 1;
-  if (left >= right || top >= bottom) return;
+  const SampleBox box = sample_box(v, rect);
+  if (box.empty()) return;
   const scan::Edge edges[3] = {{v[0], v[1], rect}, {v[1], v[2], rect}, {v[2], v[0], rect}};
   const NearnessPlane plane(v, static_cast<double>(area), rect);
-  for (int y = top; y < bottom; ++y) {
-    int x0 = left, x1 = right;
-    if (right - left <= scan::kNarrow) {
+  for (int y = box.top; y < box.bottom; ++y) {
+    int x0 = box.left, x1 = box.right;
+    if (box.right - box.left <= scan::kNarrow) {
       const auto inside = [&](int x) { return (edges[0](x, y) | edges[1](x, y) | edges[2](x, y)) >= 0; };
       while (x0 < x1 && !inside(x0)) ++x0;
       while (x1 > x0 && !inside(x1 - 1)) --x1;

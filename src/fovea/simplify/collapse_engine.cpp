@@ -214,7 +214,7 @@ void Engine::give_back(ViewMetric::Memory&& memory) {
 
 /// Prices edges and puts them into the queue, in parallel.
 void Engine::price_by_views(std::span<const Due> edges) {
-  parallel_for(context_, edges.size(), 1, [&](std::size_t i, std::size_t) {
+  views_->team().run(edges.size(), [&](std::size_t i) {
     const std::uint32_t e = edges[i].item;
     ViewMetric::Memory memory = take_memory();
     price_by_views(e, cost_.quadric(e), kEnough * std::max(edges[i].cost, level_), memory);

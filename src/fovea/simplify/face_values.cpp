@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
@@ -28,47 +29,33 @@ int find_channel(const CollapseState& state, Semantic semantic, int set) {
 using Plane = CornerPlanes::Plane;
 
 /// A number of a plane at pixels, in the order of operations that planes have.
-FOVEA_WIDE void plane_at(const Plane& plane, int number, const WideFloats& __restrict x,
-                         const WideFloats& __restrict y, WideFloats& __restrict out) {
-  const float at_0 = plane.at_0[number], dx = plane.dx[number], dy = plane.dy[number];
-  for (std::size_t i = 0; i < kWide; ++i) out[i] = at_0 + dx * x[i] + dy * y[i];
-}
-
-FOVEA_WIDE void scale(const WideFloats& __restrict by, WideFloats& __restrict numbers) {
-  for (std::size_t i = 0; i < kWide; ++i) numbers[i] *= by[i];
-}
-
-FOVEA_WIDE void invert(WideFloats& __restrict numbers) {
-  for (float& x : numbers) x = 1 / x;
+FOVEA_WIDE_PART void plane_at(const Plane& plane, int number, const WideFloats& x, const WideFloats& y,
+                              WideFloats& out) {
+  out = plane.at_0[number] + plane.dx[number] * x + plane.dy[number] * y;
 }
 
 /// A channel of colours, as numbers.
-FOVEA_WIDE void unpack(const WideWords& __restrict colors, int channel, WideFloats& __restrict out) {
-  for (std::size_t i = 0; i < kWide; ++i)
-    out[i] = static_cast<float>(static_cast<std::int32_t>(colors[i] >> (8 * channel) & 255));
+FOVEA_WIDE_PART void unpack(const WideWords& colors, int channel, WideFloats& out) {
+  convert(reinterpret_cast<WideInts>(colors >> (8 * channel) & 255), out);
 }
 
 /// Display values under light, nearly: the amount of light is the square.
-FOVEA_WIDE void light_channel(const WideFloats& __restrict tinted, const WideFloats& __restrict white,
-                              WideFloats& __restrict display) {
-  for (std::size_t i = 0; i < kWide; ++i)
-    display[i] = std::sqrt(display[i] * display[i] * tinted[i] + white[i] * (255.0f * 255.0f));
+FOVEA_WIDE_PART void light_channel(const WideFloats& tinted, const WideFloats& white, WideFloats& display) {
+  const WideFloats light = display * display * tinted + white * (255.0f * 255.0f);
+  for (std::size_t i = 0; i < kWide; ++i) display[i] = std::sqrt(light[i]);
 }
 
 /// Rounds a channel and puts it into colours; what is no number is full.
-FOVEA_WIDE void pack(const WideFloats& __restrict display, int channel, WideWords& __restrict colors) {
-  for (std::size_t i = 0; i < kWide; ++i) {
-    const float x = display[i] + 0.5f;
-    const auto whole = static_cast<std::int32_t>(x < 255 ? (x > 0 ? x : 0.0f) : 255.0f);
-    colors[i] |= static_cast<std::uint32_t>(whole) << (8 * channel);
-  }
+FOVEA_WIDE_PART void pack(const WideFloats& display, int channel, WideWords& colors) {
+  const WideFloats x = display + 0.5f;
+  WideInts whole;
+  convert(x < 255 ? (x > 0 ? x : 0.0f) : 255.0f, whole);
+  colors |= reinterpret_cast<WideWords>(whole) << (8 * channel);
 }
 
 /// Colours are opaque from here on, or holes.
-FOVEA_WIDE void cut(const WideWords& __restrict alpha_of, std::uint32_t cutoff,
-                    WideWords& __restrict colors) {
-  for (std::size_t i = 0; i < kWide; ++i)
-    colors[i] = (alpha_of[i] >> 24) < cutoff ? FragmentLists::kHole : colors[i] | 0xFF000000;
+FOVEA_WIDE_PART void cut(const WideWords& alpha_of, std::uint32_t cutoff, WideWords& colors) {
+  colors = (alpha_of >> 24) < cutoff ? FragmentLists::kHole : colors | 0xFF000000;
 }
 
 }  // namespace
@@ -267,69 +254,9 @@ struct FaceValues::Shading::Samples {
   WideFloats over_w;  ///< Numbers of planes times this are those of the surface.
 };
 
-void FaceValues::Shading::row(int y, int x0, int x1, std::uint32_t* out) const {
-  std::array<Pixel, 64> pixels;
-  for (int begin = x0; begin < x1; begin += 64) {
-    const int count = std::min(64, x1 - begin);
-    for (int i = 0; i < count; ++i)
-      pixels[static_cast<std::size_t>(i)] = {static_cast<std::uint16_t>(begin + i),
-                                             static_cast<std::uint16_t>(y)};
-    at(std::span(pixels).first(static_cast<std::size_t>(count)), out + (begin - x0));
-  }
-}
-
-void FaceValues::Shading::at(std::span<const Pixel> pixels, std::uint32_t* out) const {
-  if (values_.content_ == PixelContent::face) {
-    std::fill_n(out, pixels.size(), look_.number);
-    return;
-  }
-  Samples samples;
-  WideWords shown;
-  for (std::size_t begin = 0; begin < pixels.size(); begin += kWide) {
-    const std::size_t count = std::min(kWide, pixels.size() - begin);
-    for (std::size_t i = 0; i < kWide; ++i) {  // the last pixel fills up
-      const Pixel& pixel = pixels[begin + std::min(i, count - 1)];
-      samples.x[i] = pixel.x;
-      samples.y[i] = pixel.y;
-    }
-    plane_at(normal_, 3, samples.x, samples.y, samples.over_w);
-    invert(samples.over_w);
-    shade(samples, shown);
-    std::copy_n(shown.begin(), count, out + begin);
-  }
-}
-
-void FaceValues::Shading::shade(const Samples& at, WideWords& out) const {
-  const auto on_surface = [&](const Plane& plane, int number, WideFloats& numbers) {
-    plane_at(plane, number, at.x, at.y, numbers);
-    scale(at.over_w, numbers);
-  };
-  WideWords color;
-  color.fill(look_.color);
-  WideFloats u, v;
-  if (look_.texture != nullptr) {
-    on_surface(uv_, 0, u);
-    on_surface(uv_, 1, v);
-    look_.texture->at(level_, u, v, color);
-  }
-  const WideWords alpha = color;
-  if (look_.regions != nullptr) {
-    on_surface(region_uv_, 0, u);
-    on_surface(region_uv_, 1, v);
-    look_.regions->regions_at(look_.face, u, v, out);
-    for (std::size_t i = 0; i < kWide; ++i) {
-      if (alpha[i] >> 24 < cutoff_) out[i] = FragmentLists::kHole;
-    }
-    return;
-  }
-  if (look_.is_tinted || light_ != nullptr) light_up(at, color);
-  cut(alpha, cutoff_, color);
-  out = color;
-}
-
 /// Vertex colours and light on base colour.
-void FaceValues::Shading::light_up(const Samples& at, WideWords& color) const {
-  WideFloats tinted, white;
+FOVEA_WIDE_PART void FaceValues::Shading::light_up(const Samples& at, WideWords& color) const {
+  WideFloats tinted{}, white{};
   if (light_ != nullptr) {
     WideFloats nx, ny, nz;
     plane_at(normal_, 0, at.x, at.y, nx);
@@ -338,17 +265,102 @@ void FaceValues::Shading::light_up(const Samples& at, WideWords& color) const {
     light_->at(nx, ny, nz, tinted, white);
   }
   const WideWords base = color;
-  color.fill(0);
+  color = WideWords{};
   for (int channel = 0; channel < 3; ++channel) {
     WideFloats display, tint;
     unpack(base, channel, display);
     if (look_.is_tinted) {
       plane_at(tint_, channel, at.x, at.y, tint);
-      scale(at.over_w, tint);
-      scale(tint, display);
+      display *= tint * at.over_w;
     }
     if (light_ != nullptr) light_channel(tinted, white, display);
     pack(display, channel, color);
+  }
+}
+
+/// A number of the surface.
+FOVEA_WIDE_PART void FaceValues::Shading::on_surface(const Plane& plane, int number, const Samples& at,
+                                                     WideFloats& out) {
+  plane_at(plane, number, at.x, at.y, out);
+  out *= at.over_w;
+}
+
+FOVEA_WIDE_PART void FaceValues::Shading::color_at(const Samples& at, WideWords& out) const {
+  out = WideWords{} + look_.color;
+  if (look_.texture == nullptr) return;
+  WideFloats u, v;
+  on_surface(uv_, 0, at, u);
+  on_surface(uv_, 1, at, v);
+  look_.texture->at(level_, u, v, out);
+}
+
+/// The texel that says which region there is; kInvalid in a hole.
+FOVEA_WIDE_PART void FaceValues::Shading::region_texel(const Samples& at, WideWords& out) const {
+  out = WideWords{};
+  if (look_.regions->is_textured()) {
+    WideFloats u, v;
+    on_surface(region_uv_, 0, at, u);
+    on_surface(region_uv_, 1, at, v);
+    look_.regions->texels_at(u, v, out);
+  }
+  if (cutoff_ == 0) return;
+  WideWords color;
+  color_at(at, color);
+  out = (color >> 24) < cutoff_ ? kInvalid : out;
+}
+
+FOVEA_WIDE_PART void FaceValues::Shading::shade(const Samples& at, WideWords& out) const {
+  WideWords color;
+  color_at(at, color);
+  const WideWords alpha = color;
+  if (look_.is_tinted || light_ != nullptr) light_up(at, color);
+  cut(alpha, cutoff_, color);
+  out = color;
+}
+
+void FaceValues::Shading::row(int y, int x0, int x1, std::uint32_t* out) const {
+  std::array<std::uint32_t, 64> pixels;
+  for (int begin = x0; begin < x1; begin += 64) {
+    const int count = std::min(64, x1 - begin);
+    for (int i = 0; i < count; ++i)
+      pixels[static_cast<std::size_t>(i)] =
+          static_cast<std::uint32_t>(begin + i) + (static_cast<std::uint32_t>(y) << 16);
+    at(std::span(pixels).first(static_cast<std::size_t>(count)), out + (begin - x0));
+  }
+}
+
+FOVEA_WIDE void FaceValues::Shading::at(std::span<const std::uint32_t> pixels, std::uint32_t* out) const {
+  if (values_.content_ == PixelContent::face) {
+    std::fill_n(out, pixels.size(), look_.number);
+    return;
+  }
+  const PartRegions* const regions = look_.regions;
+  Samples samples;
+  for (std::size_t begin = 0; begin < pixels.size(); begin += kWide) {
+    const std::size_t count = std::min(kWide, pixels.size() - begin);
+    WideWords pixel, shown;
+    for (std::size_t i = 0; i < kWide; ++i) pixel[i] = pixels[begin + std::min(i, count - 1)];  // fills up
+    convert(reinterpret_cast<WideInts>(pixel & 0xFFFF), samples.x);
+    convert(reinterpret_cast<WideInts>(pixel >> 16), samples.y);
+    plane_at(normal_, 3, samples.x, samples.y, samples.over_w);
+    samples.over_w = 1 / samples.over_w;
+    if (regions != nullptr) {
+      region_texel(samples, shown);
+    } else {
+      shade(samples, shown);
+    }
+    std::memcpy(out + begin, &shown, count * sizeof(std::uint32_t));
+    if (regions == nullptr || !regions->is_textured()) continue;
+    for (std::size_t i = 0; i < count; ++i) regions->prefetch_texel(out[begin + i]);
+  }
+  if (regions == nullptr) return;
+  const std::uint32_t of_face = regions->is_textured() ? 0 : regions->region_of(look_.face);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (out[i] == kInvalid) {
+      out[i] = FragmentLists::kHole;
+    } else {
+      out[i] = regions->is_textured() ? regions->region_of_texel(out[i]) : of_face;
+    }
   }
 }
 

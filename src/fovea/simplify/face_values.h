@@ -71,23 +71,21 @@ class FaceValues {
   FaceLook look(const ShownInstance& showing, std::uint32_t f,
                 const PlannedCollapse* planned = nullptr) const;
 
-  /// A pixel of a view.
-  struct Pixel {
-    std::uint16_t x, y;
-  };
-
   /// A face in a view, ready to be looked at.
   class Shading {
    public:
     Shading(const FaceValues& values, const FaceLook& look, const std::array<ScreenVertex, 3>& v,
             std::size_t view, bool mirrored);
-    /// What pixels show, FragmentLists::kHole where there is a hole. `out` [#pixels].
-    void at(std::span<const Pixel> pixels, std::uint32_t* out) const;
+    /// What the pixels x + 2¹⁶ · y show, FragmentLists::kHole where there is a hole. `out` [#pixels].
+    void at(std::span<const std::uint32_t> pixels, std::uint32_t* out) const;
     /// The same for the pixels [x0, x1) of a row.
     void row(int y, int x0, int x1, std::uint32_t* out) const;
 
    private:
     struct Samples;
+    static void on_surface(const CornerPlanes::Plane& plane, int number, const Samples& at, WideFloats& out);
+    void color_at(const Samples& at, WideWords& out) const;
+    void region_texel(const Samples& at, WideWords& out) const;
     void shade(const Samples& at, WideWords& out) const;
     void light_up(const Samples& at, WideWords& color) const;
 

@@ -1,7 +1,9 @@
 #include "fovea/simplify/view_cost.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/prefetch.h"
 #include "fovea/base/wide.h"
+#include "fovea/render/wide_triangle.h"
 
 namespace fovea {
 
@@ -28,18 +31,187 @@ double log2_of(double x) {
   return exponent + 2 * s * sum * 1.4426950408889634;
 }
 
-/// Notes a face at the pixels [begin, end) of a row where it is nearer than what is noted of them from x0 on.
-FOVEA_WIDE void lay_span(const NearnessPlane& plane, int y, int x0, int begin, int end, std::uint32_t number,
-                         float* __restrict nearness, std::uint32_t* __restrict nearest) {
-  const auto row = static_cast<float>(plane.at_0 + plane.dy * y), slope = static_cast<float>(plane.dx);
-  const float low = plane.low, high = plane.high;
-  for (int x = begin; x < end; ++x) {
-    const float n = std::clamp(row + slope * static_cast<float>(x), low, high);
-    const float known = nearness[x - x0];
-    nearest[x - x0] = n > known ? number : nearest[x - x0];
-    nearness[x - x0] = n > known ? n : known;
+/// What a collapse would leave in kWide pixels, of the faces around it.
+struct alignas(64) LocalBlock {
+  WideFloats nearness;  // of the nearest
+  WideWords face;       // counted from 1; 0: none
+};
+
+constexpr WideWords kLaneBits = {1, 2, 4, 8, 16, 32, 64, 128};
+
+/// Notes a face where it is nearer than what is noted. `rows` are those of the columns of its box; `blocks`
+/// is that of the first pixels of the sight, `height` rows of a column after each other.
+FOVEA_WIDE void lay_face(const WideTriangle& triangle, const RowRange* rows, std::uint32_t face,
+                         int first_column, int top, int height, LocalBlock* blocks) {
+  const SampleBox box = triangle.box;
+  const WideFloats low = WideFloats{} + triangle.plane.low, high = WideFloats{} + triangle.plane.high;
+  const WideWords faces = WideWords{} + face;
+  const double at_0 = triangle.plane.at_0, dy = triangle.plane.dy;
+  const auto [b0, b1, b2] = triangle.b;
+  for (int column = box.left / kColumn; column * kColumn < box.right; ++column, ++rows) {
+    if (rows->begin >= rows->end) continue;
+    const WideInts x = kLanes + column * kColumn;
+    const auto words = reinterpret_cast<WideWords>(x);
+    const auto y0 = static_cast<std::uint32_t>(rows->begin);
+    WideWords edge0 = triangle.a[0] * words + (b0 * y0 + triangle.c[0]);
+    WideWords edge1 = triangle.a[1] * words + (b1 * y0 + triangle.c[1]);
+    WideWords edge2 = triangle.a[2] * words + (b2 * y0 + triangle.c[2]);
+    const WideFloats along = __builtin_convertvector(x, WideFloats) * static_cast<float>(triangle.plane.dx);
+    LocalBlock* block = blocks + (column - first_column) * height + (rows->begin - top);
+    for (int y = rows->begin; y < rows->end; ++y, ++block) {
+      WideFloats nearness = along + static_cast<float>(at_0 + dy * y);
+      nearness = nearness < low ? low : nearness;
+      nearness = nearness > high ? high : nearness;
+      const WideFloats known = block->nearness;
+      const WideInts is_inside = reinterpret_cast<WideInts>(edge0 | edge1 | edge2) >= 0;
+      const WideInts is_nearer = is_inside & (nearness > known);
+      block->nearness = is_nearer ? nearness : known;
+      block->face = is_nearer ? faces : block->face;
+      edge0 += b0;
+      edge1 += b1;
+      edge2 += b2;
+    }
   }
 }
+
+/// So many blocks of nothing.
+FOVEA_WIDE void clear(LocalBlock* blocks, int count) {
+  for (int i = 0; i < count; ++i)
+    blocks[i] = {WideFloats{} - std::numeric_limits<float>::infinity(), WideWords{}};
+}
+
+/// Pixels that a face would show, with what they show now; or that nothing around the edge would.
+struct FoundPixels {
+  std::uint32_t* pixels;  // x + 2¹⁶ · y
+  std::uint32_t* before;
+  std::uint32_t* original;
+  std::uint32_t* end;  // [#faces + 1], where the next of a face goes
+};
+
+/// For each set of lanes, a bit for each: their numbers in order.
+constexpr std::array<std::array<std::uint16_t, kWide>, 256> make_lane_lists() {
+  std::array<std::array<std::uint16_t, kWide>, 256> lists{};
+  for (std::size_t set = 0; set < lists.size(); ++set) {
+    std::size_t n = 0;
+    for (std::uint16_t i = 0; i < kWide; ++i) {
+      if ((set >> i & 1) != 0) lists[set][n++] = i;
+    }
+  }
+  return lists;
+}
+alignas(64) constexpr auto kLaneLists = make_lane_lists();
+
+/// A column of blocks, in a view.
+struct BlockColumn {
+  const FrontBlock* fronts;
+  const LocalBlock* locals;        // from row `begin` on
+  const std::uint32_t* originals;  // of pixels; null: none
+  int begin, end;                  // rows
+  int x, width;                    // pixels of the view
+  // Where many triangles go, what says it of each, see Scratch; else empty.
+  std::span<const std::uint32_t> changed_by;
+  std::uint32_t collapse;
+};
+/// More than go around an edge that is shown once.
+constexpr std::size_t kMany = 32;
+
+/// Adds to what is found where a face would be in front without doubt; in `unclear` notes the pixels about
+/// which more has to be asked. `going` are the triangles that the collapse changes. Returns how many pixels
+/// are unclear.
+FOVEA_WIDE std::size_t find_changes(const BlockColumn& column, std::span<const std::uint32_t> going,
+                                    const FoundPixels& found, std::uint32_t* unclear) {
+  std::size_t unclear_count = 0;
+  const std::uint32_t within = column.width >= kColumn ? 255 : (1u << column.width) - 1;
+  const LocalBlock* local = column.locals;
+  for (int y = column.begin; y < column.end; ++y, ++local) {
+    const FrontBlock& front = column.fronts[y];
+    WideInts goes{};
+    if (column.changed_by.empty()) {
+      for (const std::uint32_t t : going) goes |= front.triangle == t;
+    } else {
+      for (std::size_t i = 0; i < kWide; ++i) {
+        const std::size_t t = std::min<std::size_t>(front.triangle[i], column.changed_by.size() - 1);
+        goes[i] = column.changed_by[t] == column.collapse ? -1 : 0;
+      }
+    }
+    const WideFloats nearness = local->nearness;
+    const WideFloats bound = goes ? front.second_nearness : front.nearness;
+    const WideInts wins = nearness > bound;
+    const WideInts asks = ~wins & (goes | ((nearness == bound) & (local->face != 0)));
+    std::uint32_t bits = 0;  // those that win, and 8 higher those that ask
+    gather_bits((reinterpret_cast<WideWords>(wins) & kLaneBits) |
+                    (reinterpret_cast<WideWords>(asks) & (kLaneBits << 8)),
+                bits);
+    const std::uint32_t pixel = (static_cast<std::uint32_t>(y) << 16) + static_cast<std::uint32_t>(column.x);
+    for (std::uint32_t left = bits >> 8 & within; left != 0; left &= left - 1)
+      unclear[unclear_count++] = pixel + static_cast<std::uint32_t>(std::countr_zero(left));
+    // Face by face, mostly one or two: its pixels all at once, and what is beyond them will be overwritten.
+    // There is room for that, as no block before this one has had more than kWide of them.
+    for (std::uint32_t left = bits & within; left != 0;) {
+      const std::uint32_t face = local->face[std::countr_zero(left)];
+      std::uint32_t set = 0;
+      gather_bits(reinterpret_cast<WideWords>(local->face == face) & kLaneBits, set);
+      set &= left;
+      left ^= set;
+      using Narrow [[gnu::vector_size(16)]] = std::uint16_t;
+      Narrow narrow;
+      std::memcpy(&narrow, kLaneLists[set].data(), sizeof(narrow));
+      const WideWords lanes = __builtin_convertvector(narrow, WideWords);
+      const std::uint32_t at = found.end[face];
+      found.end[face] += static_cast<std::uint32_t>(std::popcount(set));
+      const WideWords pixels = lanes + pixel;
+      std::memcpy(found.pixels + at, &pixels, sizeof(pixels));
+      WideWords values;
+      pick(front.value, lanes, values);
+      std::memcpy(found.before + at, &values, sizeof(values));
+      if (column.originals == nullptr) continue;
+      std::memcpy(&values, column.originals + static_cast<std::uint32_t>(y) * kWide, sizeof(values));
+      pick(values, lanes, values);
+      std::memcpy(found.original + at, &values, sizeof(values));
+    }
+  }
+  return unclear_count;
+}
+
+/// Keeps those of n values that differ before and after, in their order. Returns how many these are.
+/// Arrays have room for a multiple of kWide.
+FOVEA_WIDE std::size_t keep_different(std::size_t n, std::uint32_t* before, std::uint32_t* after) {
+  std::size_t kept = 0;
+  for (std::size_t begin = 0; begin < n; begin += kWide) {
+    WideWords from, to;
+    std::memcpy(&from, before + begin, sizeof(from));
+    std::memcpy(&to, after + begin, sizeof(to));
+    std::uint32_t differ = 0;
+    gather_bits(reinterpret_cast<WideWords>(from != to) & kLaneBits, differ);
+    if (n - begin < kWide) differ &= (1u << (n - begin)) - 1;
+    for (; differ != 0; differ &= differ - 1) {
+      const std::size_t k = begin + static_cast<std::size_t>(std::countr_zero(differ));
+      before[kept] = before[k];
+      after[kept++] = after[k];
+    }
+  }
+  return kept;
+}
+
+/// How much farther n colours are from the originals after than before. Arrays have room for a multiple of
+/// kWide.
+FOVEA_WIDE std::int64_t added_error(std::size_t n, const std::uint32_t* before, const std::uint32_t* after,
+                                    const std::uint32_t* original) {
+  std::int64_t sum = 0;
+  for (std::size_t begin = 0; begin < n; begin += kWide) {
+    const auto count = static_cast<std::int32_t>(std::min(n - begin, kWide));
+    std::int32_t part = 0;
+    for (std::size_t i = 0; i < kWide; ++i) {
+      const std::int32_t more = squared_difference(after[begin + i], original[begin + i]) -
+                                squared_difference(before[begin + i], original[begin + i]);
+      part += static_cast<std::int32_t>(i) < count ? more : 0;
+    }
+    sum += part;
+  }
+  return sum;
+}
+
+std::size_t rounded_up(std::size_t n) { return (n + kWide - 1) / kWide * kWide; }
 
 }  // namespace
 
@@ -54,16 +226,16 @@ struct ViewCost::LocalFace {
 
 /// The faces around an edge and the pixels that they cover, before and after its collapse.
 struct ViewCost::Scratch {
-  Scratch(std::size_t shown_faces, std::size_t width, std::size_t value_count)
-      : changed_by(shown_faces + 1, 0), local(width), nearness(width), delta(value_count, 0) {}
+  Scratch(std::size_t shown_faces, std::size_t value_count)
+      : changed_by(shown_faces + 1, 0), delta(value_count, 0) {}
 
-  /// A face as a view would see it, and the pixels in which it would be in front.
+  /// A face as a view would see it after the collapse.
   struct Seen {
-    bool before = false, after = false;  // whether the view sees it at all
+    bool is_seen = false;
     std::array<ScreenVertex, 3> corners;
-    NearnessPlane plane;
+    SampleBox box;
+    std::size_t first_rows = 0;  // of the columns of its box
     std::optional<FaceValues::Shading> shading;
-    std::vector<FaceValues::Pixel> pixels;
   };
 
   void begin_collapse() {
@@ -81,31 +253,42 @@ struct ViewCost::Scratch {
     return changed_by[std::min<std::size_t>(fragment.triangle, changed_by.size() - 1)] == collapse;
   }
 
-  /// What a face covers of a row.
-  struct Span {
-    int begin = 0, end = 0;
-    std::uint32_t face = 0;  // counted from 1; 0: before the collapse
-    std::uint32_t next = kInvalid;
-  };
-  /// What all of them cover.
-  struct Row {
-    int begin = std::numeric_limits<int>::max(), end = 0;
-    std::uint32_t first_span = kInvalid;
-  };
-  /// A view of the faces.
+  /// A view of the faces: which pixels they may cover, before or after.
   struct Sight {
-    void add_span(int y, int begin, int end, std::uint32_t face) {
-      Row& row = rows[static_cast<std::size_t>(y - top)];
-      row.begin = std::min(row.begin, begin);
-      row.end = std::max(row.end, end);
-      spans.push_back({begin, end, face, row.first_span});
-      row.first_span = static_cast<std::uint32_t>(spans.size() - 1);
+    /// Adds those of a triangle. Returns where the rows of its columns begin.
+    std::size_t add(const std::array<ScreenVertex, 3>& v, const SampleBox& box) {
+      const int from = box.left / kColumn, to = (box.right - 1) / kColumn;
+      const std::size_t at = rows.size();
+      rows.resize(at + static_cast<std::size_t>(to - from + 1), {box.top, box.bottom});
+      if (from < to && WideTriangle::fits(v)) find_rows(v, box, rows.data() + at);
+      for (int column = from; column <= to; ++column) {
+        RowRange& all = columns[static_cast<std::size_t>(column)];
+        const RowRange& one = rows[at + static_cast<std::size_t>(column - from)];
+        if (one.begin >= one.end) continue;
+        all.begin = std::min(all.begin, one.begin);
+        all.end = std::max(all.end, one.end);
+      }
+      first = std::min(first, from);
+      last = std::max(last, to);
+      top = std::min(top, box.top);
+      bottom = std::max(bottom, box.bottom);
+      return at;
     }
+    void clear() {
+      for (int column = first; column <= last; ++column) columns[static_cast<std::size_t>(column)] = {};
+      first = top = std::numeric_limits<int>::max();
+      last = bottom = -1;
+      going.clear();
+      rows.clear();
+    }
+    int height() const { return bottom - top; }
 
-    std::vector<Seen> seen;  // [#faces] or more
-    int top = 0;
-    std::vector<Row> rows;    // from there on
-    std::vector<Span> spans;  // in each row by face
+    std::vector<Seen> seen;            // [#faces] or more
+    std::vector<std::uint32_t> going;  // those that are seen before, as shown
+    std::vector<RowRange> rows;        // of the columns of each face's box
+    std::vector<RowRange>
+        columns;  // of all of them, for the whole view; those from first to last are covered
+    int first = 0, last = -1, top = 0, bottom = 0;
   };
   Sight& sight(std::size_t view) { return sights[view % 2]; }
 
@@ -114,23 +297,26 @@ struct ViewCost::Scratch {
   std::vector<LocalFace> faces;                // by shown number
   std::vector<std::optional<FaceLook>> looks;  // [#faces]
   std::array<Sight, 2> sights;                 // of a view and the next
-  // Of a row of the view, from the first pixel that is covered:
-  std::vector<std::uint32_t> local;      // the nearest face after the collapse, counted from 1,
-  std::vector<float> nearness;           // and how near it is
-  std::vector<std::uint32_t> values;     // of pixels that are shaded
-  std::vector<PlannedCollapse> planned;  // [#showings of the slot]
-  std::vector<ScreenVertex> merged;      // [#showings of the slot][#views]
-  std::vector<int> delta;                // [#values], pixels more after the collapse (entropy)
-  std::vector<std::uint32_t> in_delta;   // where that may not be 0
+  // Of the pixels that a sight covers:
+  std::vector<LocalBlock> locals;      // [#columns][height]
+  std::vector<std::uint32_t> unclear;  // of a column
+  // Of those that would change, face by face; for each there is room for all that it may cover:
+  std::vector<std::uint32_t> pixels, before, original, after;
+  std::vector<std::uint32_t> begin, end;  // [#faces + 1]; the first is not a face
+  std::vector<std::uint32_t> values;      // of a row
+  std::vector<PlannedCollapse> planned;   // [#showings of the slot]
+  std::vector<ScreenVertex> merged;       // [#showings of the slot][#views]
+  std::vector<int> delta;                 // [#values], pixels more after the collapse (entropy)
+  std::vector<std::uint32_t> in_delta;    // where that may not be 0
 };
 
 ViewCost::~ViewCost() = default;
 
 ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceValues& values,
                    ViewMeasure measure, int size, std::vector<std::vector<std::uint32_t>> originals,
-                   const Context& context)
-    : state_(state), shown_(shown), values_(values), measure_(measure), context_(context) {
-  views_.assign(shown.view_count(), {FragmentLists(size, size, values.background()), {}});
+                   const Context& context, Team& team)
+    : state_(state), shown_(shown), values_(values), measure_(measure), team_(team) {
+  views_.assign(shown.view_count(), {FragmentLists(size, size, values.background()), {}, {}});
   const std::size_t pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   if (measure == ViewMeasure::entropy) {
     const double most = static_cast<double>(pixels) * log2_of(static_cast<double>(pixels) + 1);
@@ -156,18 +342,25 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
         }
       }
       if (measure == ViewMeasure::entropy) continue;
-      for (std::size_t p = 0; p < pixels; ++p) {
-        const std::uint32_t now = view.lists.front(p).first.value;
-        const std::uint32_t first = originals.empty() ? now : originals[v][p];
-        view.lists.notes(p) = {first, static_cast<std::uint32_t>(squared_difference(now, first))};
+      view.original.resize(view.lists.pixel_count());
+      for (std::size_t p = 0; p < view.original.size(); ++p) view.original[p] = view.lists.first(p).value;
+      if (originals.empty()) continue;
+      const std::uint32_t* original = originals[v].data();
+      for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) view.original[view.lists.pixel(x, y)] = *original++;
       }
     }
   });
 }
 
 std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
-  return std::make_shared<Scratch>(shown_.face_count(), static_cast<std::size_t>(views_[0].lists.width()),
-                                   measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
+  auto scratch = std::make_shared<Scratch>(shown_.face_count(),
+                                           measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
+  const FragmentLists& lists = views_[0].lists;
+  for (Scratch::Sight& sight : scratch->sights)
+    sight.columns.resize(rounded_up(static_cast<std::size_t>(lists.width())) / kWide);
+  scratch->unclear.resize(static_cast<std::size_t>(lists.height()) * kWide);
+  return scratch;
 }
 
 std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const ShownInstance& showing,
@@ -179,15 +372,10 @@ std::array<ScreenVertex, 3> ViewCost::corners(std::size_t view, const ShownInsta
 
 // --- What is shown ---------------------------------------------------------------------------------------
 
-void ViewCost::swap_value(ViewState& view, std::size_t pixel, const Fragment& before,
-                          const Fragment& after) const {
-  if (measure_ == ViewMeasure::entropy) {
-    --view.count[before.value];
-    ++view.count[after.value];
-  } else {
-    std::array<std::uint32_t, 2>& notes = view.lists.notes(pixel);
-    notes[1] = static_cast<std::uint32_t>(squared_difference(after.value, notes[0]));
-  }
+void ViewCost::swap_value(ViewState& view, const Fragment& before, const Fragment& after) const {
+  if (measure_ != ViewMeasure::entropy) return;
+  --view.count[before.value];
+  ++view.count[after.value];
 }
 
 void ViewCost::put_in(std::size_t v, const ShownInstance& showing, std::uint32_t f) {
@@ -199,19 +387,16 @@ void ViewCost::put_in(std::size_t v, const ShownInstance& showing, std::uint32_t
   view.lists.insert(
       shown_.shown_face(showing, f), at,
       [&](int y, int x0, int x1, std::uint32_t* out) { shading.row(y, x0, x1, out); },
-      [&](std::size_t p, const Fragment& before, const Fragment& after) {
-        swap_value(view, p, before, after);
-      });
+      [&](std::size_t, const Fragment& before, const Fragment& after) { swap_value(view, before, after); });
 }
 
 void ViewCost::take_out(std::size_t v, const ShownInstance& showing, std::uint32_t f) {
   const std::array<ScreenVertex, 3> at = corners(v, showing, f);
   if (!ShownSurface::is_seen(at, shown_.is_double_sided(f), showing.mirrored)) return;
   ViewState& view = views_[v];
-  view.lists.remove(shown_.shown_face(showing, f), at,
-                    [&](std::size_t p, const Fragment& before, const Fragment& after) {
-                      swap_value(view, p, before, after);
-                    });
+  view.lists.remove(
+      shown_.shown_face(showing, f), at,
+      [&](std::size_t, const Fragment& before, const Fragment& after) { swap_value(view, before, after); });
 }
 
 /// Calls change(view, showing, face) for all of them, views in parallel if there is enough to do.
@@ -221,15 +406,16 @@ void ViewCost::for_showings(std::span<const std::uint32_t> faces, Change&& chang
   const double depth =
       static_cast<double>(views_[0].lists.size()) / (static_cast<double>(state_.mesh.live_faces) + 1);
   const double fragments = depth * static_cast<double>(faces.size() * views_.size());
-  parallel_for(context_, views_.size(), fragments > kMuch ? 1 : views_.size(),
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t v = begin; v < end; ++v) {
-                   for (const std::uint32_t f : faces) {
-                     for (const ShownInstance& showing : shown_.showings(state_.slot_of_face(f)))
-                       change(v, showing, f);
-                   }
-                 }
-               });
+  const auto in_view = [&](std::size_t v) {
+    for (const std::uint32_t f : faces) {
+      for (const ShownInstance& showing : shown_.showings(state_.slot_of_face(f))) change(v, showing, f);
+    }
+  };
+  if (fragments > kMuch) {
+    team_.run(views_.size(), in_view);
+  } else {
+    for (std::size_t v = 0; v < views_.size(); ++v) in_view(v);
+  }
 }
 
 void ViewCost::put_in(std::span<const std::uint32_t> faces) {
@@ -305,7 +491,9 @@ void ViewCost::add_change(double limit, Scratch& scratch, PartialChange& part) c
   do {
     const std::size_t v = part.views++;
     if (!is_whole(part)) look_at(part.views, scratch);  // while its pixels come, this view is looked at
-    part.sum += measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
+    if (scratch.sight(v).last >= 0)
+      part.sum +=
+          measure_ == ViewMeasure::image ? change_of_image(v, scratch) : change_of_entropy(v, scratch);
   } while (!is_whole(part) && amount(part) <= limit);
 }
 
@@ -354,81 +542,102 @@ ViewCost::LocalFace ViewCost::local_face(const ShownInstance& showing, std::uint
   return local;
 }
 
-/// Notes how a view sees the faces and what they cover, before and after, and starts to load these pixels.
+/// Notes how a view sees the faces and what they may cover, before and after, and starts to load these
+/// pixels.
 void ViewCost::look_at(std::size_t view, Scratch& scratch) const {
   const FragmentLists& lists = views_[view].lists;
   Scratch::Sight& sight = scratch.sight(view);
-  std::int32_t top = std::numeric_limits<std::int32_t>::max(), bottom = 0;
-  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v) {
-    if (!ShownSurface::is_seen(v, local.double_sided, local.showing->mirrored)) return false;
-    const auto [low, high] = std::minmax({v[0].y, v[1].y, v[2].y});
-    top = std::min(top, low);
-    bottom = std::max(bottom, high);
-    return true;
-  };
+  sight.clear();
   const auto corners = [&](const std::array<const ScreenVertex*, 3>& v) {
     return std::array<ScreenVertex, 3>{v[0][view], v[1][view], v[2][view]};
+  };
+  const auto is_seen = [&](const LocalFace& local, const std::array<ScreenVertex, 3>& v,
+                           Scratch::Seen& seen) {
+    if (!ShownSurface::is_seen(v, local.double_sided, local.showing->mirrored)) return false;
+    seen.box = sample_box(v, lists.rect());
+    if (seen.box.empty()) return false;
+    seen.first_rows = sight.add(v, seen.box);
+    return true;
   };
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
     const LocalFace& local = scratch.faces[i];
     Scratch::Seen& seen = sight.seen[i];
-    seen.before = is_seen(local, corners(local.before));
+    if (is_seen(local, corners(local.before), seen)) sight.going.push_back(local.shown);
     seen.corners = corners(local.after);
-    seen.after = !local.goes && is_seen(local, seen.corners);
+    seen.is_seen = !local.goes && is_seen(local, seen.corners, seen);
     seen.shading.reset();
-    seen.pixels.clear();
   }
-  sight.top = std::max(top >> kSubsampleBits, 0);
-  const int end = std::min((bottom >> kSubsampleBits) + 1, lists.height());
-  sight.rows.assign(static_cast<std::size_t>(std::max(end - sight.top, 0)), {});
-  sight.spans.clear();
-  if (sight.rows.empty()) return;
-  for (std::size_t i = scratch.faces.size(); i-- > 0;) {  // the last comes first in a row's list
-    Scratch::Seen& seen = sight.seen[i];
-    if (seen.before) {
-      for_spans(corners(scratch.faces[i].before), lists.rect(),
-                [&](int y, int x0, int x1, const NearnessPlane&) { sight.add_span(y, x0, x1, 0); });
+  const ViewState& state = views_[view];
+  for (int column = sight.first; column <= sight.last; ++column) {
+    const auto [begin, end] = sight.columns[static_cast<std::size_t>(column)];
+    const FrontBlock* const blocks = lists.blocks(column);
+    for (int y = begin; y < end; ++y) {
+      prefetch(&blocks[y].nearness);
+      prefetch(&blocks[y].value);
     }
-    if (!seen.after) continue;
-    for_spans(seen.corners, lists.rect(), [&](int y, int x0, int x1, const NearnessPlane& plane) {
-      seen.plane = plane;
-      sight.add_span(y, x0, x1, static_cast<std::uint32_t>(i + 1));
-    });
-  }
-  constexpr int kPerLine = 2;
-  for (std::size_t r = 0; r < sight.rows.size(); ++r) {
-    const Scratch::Row& row = sight.rows[r];
-    for (int x = row.begin; x < row.end; x += kPerLine)
-      prefetch(&lists.front(lists.pixel(x, sight.top + static_cast<int>(r))));
+    if (state.original.empty()) continue;
+    constexpr int kPerLine = 2;
+    for (int y = begin; y < end; y += kPerLine) prefetch(&state.original[lists.pixel(column * kColumn, y)]);
   }
 }
 
-/// Finds what is nearest after the collapse in row r of those that are covered.
-void ViewCost::lay_row(std::size_t view, std::size_t r, Scratch& scratch) const {
-  const Scratch::Sight& sight = scratch.sight(view);
-  const Scratch::Row& row = sight.rows[r];
-  const int y = sight.top + static_cast<int>(r);
-  const auto count = static_cast<std::size_t>(row.end - row.begin);
-  std::fill_n(scratch.nearness.data(), count, -std::numeric_limits<float>::infinity());
-  std::fill_n(scratch.local.data(), count, 0u);
-  for (std::uint32_t s = row.first_span; s != kInvalid; s = sight.spans[s].next) {
-    const Scratch::Span& at = sight.spans[s];
-    if (at.face == 0) continue;
-    const NearnessPlane& plane = sight.seen[at.face - 1].plane;
-    if (!scratch.faces[at.face - 1].has_holes) {
-      lay_span(plane, y, row.begin, at.begin, at.end, at.face, scratch.nearness.data(), scratch.local.data());
-      continue;
-    }
-    scratch.values.resize(static_cast<std::size_t>(at.end - at.begin));
-    shading(scratch, at.face - 1, view).row(y, at.begin, at.end, scratch.values.data());
-    plane.for_row(y, at.begin, at.end, [&](int x, float n) {
-      if (scratch.values[static_cast<std::size_t>(x - at.begin)] == FragmentLists::kHole) return;
-      const auto k = static_cast<std::size_t>(x - row.begin);
-      if (!(n > scratch.nearness[k])) return;
-      scratch.nearness[k] = n;
-      scratch.local[k] = at.face;
-    });
+/// Finds what is nearest after the collapse of the faces around the edge, and makes room for what they show.
+void ViewCost::lay_faces(std::size_t view, Scratch& scratch) const {
+  Scratch::Sight& sight = scratch.sight(view);
+  const int height = sight.height();
+  scratch.locals.resize(static_cast<std::size_t>(sight.last - sight.first + 1) *
+                        static_cast<std::size_t>(height));
+  LocalBlock* column_blocks = scratch.locals.data();
+  for (int column = sight.first; column <= sight.last; ++column, column_blocks += height) {
+    const auto [begin, end] = sight.columns[static_cast<std::size_t>(column)];
+    if (begin < end) clear(column_blocks + (begin - sight.top), end - begin);
   }
+  std::size_t room = 0;
+  scratch.begin.assign(1, 0);
+  for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
+    scratch.begin.push_back(static_cast<std::uint32_t>(room));
+    const Scratch::Seen& seen = sight.seen[i];
+    if (!seen.is_seen) continue;
+    const auto columns =
+        static_cast<std::size_t>((seen.box.right - 1) / kColumn - seen.box.left / kColumn + 1);
+    for (const RowRange& rows : std::span(sight.rows).subspan(seen.first_rows, columns))
+      room += static_cast<std::size_t>(std::max(rows.end - rows.begin, 0)) * kWide;
+    if (!scratch.faces[i].has_holes && WideTriangle::fits(seen.corners)) {
+      lay_face(WideTriangle(seen.corners, views_[view].lists.rect()), sight.rows.data() + seen.first_rows,
+               static_cast<std::uint32_t>(i + 1), sight.first, sight.top, height, scratch.locals.data());
+    } else {
+      lay_spans(view, i, scratch);
+    }
+  }
+  scratch.end = scratch.begin;
+  for (std::vector<std::uint32_t>* const words :
+       {&scratch.pixels, &scratch.before, &scratch.original, &scratch.after}) {
+    if (words->size() < room) words->resize(room);
+  }
+}
+
+/// The same for face i, one row after the other.
+void ViewCost::lay_spans(std::size_t view, std::size_t i, Scratch& scratch) const {
+  Scratch::Sight& sight = scratch.sight(view);
+  const bool has_holes = scratch.faces[i].has_holes;
+  for_spans(sight.seen[i].corners, views_[view].lists.rect(),
+            [&](int y, int x0, int x1, const NearnessPlane& plane) {
+              if (has_holes) {
+                scratch.values.resize(static_cast<std::size_t>(x1 - x0));
+                shading(scratch, i, view).row(y, x0, x1, scratch.values.data());
+              }
+              plane.for_row(y, x0, x1, [&](int x, float n) {
+                if (has_holes && scratch.values[static_cast<std::size_t>(x - x0)] == FragmentLists::kHole)
+                  return;
+                const int column = x / kColumn - sight.first;
+                LocalBlock& block =
+                    scratch.locals[static_cast<std::size_t>(column * sight.height() + y - sight.top)];
+                const auto lane = static_cast<std::size_t>(x % kColumn);
+                if (!(n > block.nearness[lane])) return;
+                block.nearness[lane] = n;
+                block.face[lane] = static_cast<std::uint32_t>(i + 1);
+              });
+            });
 }
 
 /// What face i would show, made when it is first asked for.
@@ -443,48 +652,85 @@ const FaceValues::Shading& ViewCost::shading(Scratch& scratch, std::size_t i, st
   return *seen.shading;
 }
 
-/// Calls change(pixel as it is, value after) where something else would be in front.
+/// Calls change(n, values before, values after, originals) for groups of n pixels in which something else
+/// would be in front. Arrays, which it may write to, have room for a multiple of kWide and are filled up with
+/// the last pixel's; originals are for images.
 template <class Change>
 void ViewCost::for_changes(std::size_t v, Scratch& scratch, Change&& change) const {
-  const FragmentLists& lists = views_[v].lists;
+  const ViewState& view = views_[v];
   Scratch::Sight& sight = scratch.sight(v);
-  for (std::size_t r = 0; r < sight.rows.size(); ++r) {
-    const Scratch::Row& row = sight.rows[r];
-    if (row.first_span == kInvalid) continue;
-    const int y = sight.top + static_cast<int>(r);
-    lay_row(v, r, scratch);
-    const FrontPixel* const fronts = &lists.front(lists.pixel(0, y));
-    for (int x = row.begin; x < row.end; ++x) {
-      const auto k = static_cast<std::size_t>(x - row.begin);
-      const FrontPixel& front = fronts[x];
-      const bool goes = scratch.changes(front.first);
-      const float nearness = scratch.nearness[k], bound = goes ? front.second.nearness : front.first.nearness;
-      const std::uint32_t local = scratch.local[k];
-      bool is_first = nearness > bound;  // whatever of it stays
-      if (!is_first && (goes || (nearness == bound && local != 0))) {
-        const Fragment stays = !goes ? front.first : nearest_that_stays(lists, lists.pixel(x, y), scratch);
-        is_first = local != 0 && Fragment{nearness, scratch.faces[local - 1].shown, 0}.is_before(stays);
-        if (!is_first && goes) change(front, stays.value);
-      }
-      if (is_first)
-        sight.seen[local - 1].pixels.push_back(
-            {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+  lay_faces(v, scratch);
+  const FoundPixels found{scratch.pixels.data(), scratch.before.data(), scratch.original.data(),
+                          scratch.end.data()};
+  std::span<const std::uint32_t> changed_by;
+  if (sight.going.size() > kMany) changed_by = scratch.changed_by;
+  const LocalBlock* locals = scratch.locals.data();
+  for (int column = sight.first; column <= sight.last; ++column, locals += sight.height()) {
+    const auto [begin, end] = sight.columns[static_cast<std::size_t>(column)];
+    if (begin >= end) continue;
+    const int x = column * kColumn;
+    const std::uint32_t* const originals =
+        view.original.empty() ? nullptr : view.original.data() + view.lists.pixel(x, 0);
+    const BlockColumn pixels{view.lists.blocks(column),
+                             locals + (begin - sight.top),
+                             originals,
+                             begin,
+                             end,
+                             x,
+                             view.lists.width() - x,
+                             changed_by,
+                             scratch.collapse};
+    const std::size_t unclear = find_changes(pixels, sight.going, found, scratch.unclear.data());
+    for (std::size_t n = 0; n < unclear; ++n) {
+      const std::uint32_t pixel = scratch.unclear[n];
+      const auto y = static_cast<int>(pixel >> 16);
+      const std::size_t lane = pixel % kWide;
+      const LocalBlock& local = locals[y - sight.top];
+      ask(v, static_cast<int>(pixel & 0xFFFF), y, local.nearness[lane], local.face[lane], scratch, change);
     }
   }
   for (std::size_t i = 0; i < scratch.faces.size(); ++i) {
-    const std::vector<FaceValues::Pixel>& pixels = sight.seen[i].pixels;
-    if (pixels.empty()) continue;
-    scratch.values.resize(pixels.size());
-    shading(scratch, i, v).at(pixels, scratch.values.data());
-    for (std::size_t n = 0; n < pixels.size(); ++n)
-      change(lists.front(lists.pixel(pixels[n].x, pixels[n].y)), scratch.values[n]);
+    const std::size_t first = scratch.begin[i + 1], count = scratch.end[i + 1] - first;
+    if (count == 0) continue;
+    for (std::vector<std::uint32_t>* const words : {&scratch.pixels, &scratch.before, &scratch.original}) {
+      for (std::size_t n = count; n % kWide != 0; ++n) (*words)[first + n] = (*words)[first + count - 1];
+    }
+    std::uint32_t* const after = scratch.after.data() + first;
+    shading(scratch, i, v).at(std::span(scratch.pixels).subspan(first, count), after);
+    for (std::size_t n = count; n % kWide != 0; ++n) after[n] = after[count - 1];
+    change(count, scratch.before.data() + first, after, scratch.original.data() + first);
+  }
+}
+
+/// Of a pixel in which nothing is in front without doubt: it shows a face of the collapse now, or one of
+/// equal nearness after it.
+template <class Change>
+void ViewCost::ask(std::size_t v, int x, int y, float nearness, std::uint32_t face, Scratch& scratch,
+                   Change&& change) const {
+  const ViewState& view = views_[v];
+  const std::size_t pixel = view.lists.pixel(x, y);
+  const Fragment front = view.lists.first(pixel);
+  const bool goes = scratch.changes(front);
+  const Fragment stays = goes ? nearest_that_stays(view.lists, pixel, scratch) : front;
+  const std::uint32_t original = view.original.empty() ? 0 : view.original[pixel];
+  if (face != 0 && Fragment{nearness, scratch.faces[face - 1].shown, 0}.is_before(stays)) {
+    const std::uint32_t at = scratch.end[face]++;
+    scratch.pixels[at] = static_cast<std::uint32_t>(x) + (static_cast<std::uint32_t>(y) << 16);
+    scratch.before[at] = front.value;
+    scratch.original[at] = original;
+  } else if (goes) {
+    std::array<std::uint32_t, kWide> before, after, originals;
+    before.fill(front.value);
+    after.fill(stays.value);
+    originals.fill(original);
+    change(std::size_t{1}, before.data(), after.data(), originals.data());
   }
 }
 
 /// What is nearest at a pixel of all that the collapse does not change.
 Fragment ViewCost::nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch) {
-  const FrontPixel& front = lists.front(pixel);
-  if (!scratch.changes(front.second)) return front.second;
+  const Fragment second = lists.front(pixel).second;
+  if (!scratch.changes(second)) return second;
   for (const Fragment& fragment : lists.behind(pixel)) {
     if (!scratch.changes(fragment)) return fragment;
   }
@@ -493,9 +739,9 @@ Fragment ViewCost::nearest_that_stays(const FragmentLists& lists, std::size_t pi
 
 std::int64_t ViewCost::change_of_image(std::size_t v, Scratch& scratch) const {
   std::int64_t sum = 0;
-  for_changes(v, scratch, [&](const FrontPixel& pixel, std::uint32_t after) {
-    sum += squared_difference(after, original(pixel)) - error(pixel);
-  });
+  for_changes(v, scratch,
+              [&](std::size_t n, const std::uint32_t* before, const std::uint32_t* after,
+                  const std::uint32_t* original) { sum += added_error(n, before, after, original); });
   return sum;
 }
 
@@ -505,21 +751,16 @@ std::int64_t ViewCost::change_of_entropy(std::size_t v, Scratch& scratch) const 
     if (scratch.delta[region] == 0) scratch.in_delta.push_back(region);
     scratch.delta[region] += pixels;
   };
-  // Neighbours mostly change alike.
-  std::uint32_t from = 0, to = 0;
-  int alike = 0;
-  for_changes(v, scratch, [&](const FrontPixel& pixel, std::uint32_t after) {
-    if (pixel.first.value != from || after != to) {
-      add(from, -alike);
-      add(to, alike);
-      from = pixel.first.value;
-      to = after;
-      alike = 0;
-    }
-    ++alike;
-  });
-  add(from, -alike);
-  add(to, alike);
+  for_changes(v, scratch,
+              [&](std::size_t n, std::uint32_t* before, std::uint32_t* after, const std::uint32_t*) {
+                const std::size_t count = keep_different(n, before, after);
+                for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+                  // Neighbours mostly change alike.
+                  while (end < count && before[end] == before[begin] && after[end] == after[begin]) ++end;
+                  add(before[begin], -static_cast<int>(end - begin));
+                  add(after[begin], static_cast<int>(end - begin));
+                }
+              });
   std::int64_t sum = 0;
   for (const std::uint32_t region : scratch.in_delta) {  // one may be there twice
     const std::uint32_t count = view.count[region];
@@ -532,9 +773,11 @@ std::int64_t ViewCost::change_of_entropy(std::size_t v, Scratch& scratch) const 
 
 std::vector<std::uint32_t> ViewCost::picture(std::size_t view) const {
   const FragmentLists& lists = views_[view].lists;
-  std::vector<std::uint32_t> values(static_cast<std::size_t>(lists.width()) *
-                                    static_cast<std::size_t>(lists.height()));
-  for (std::size_t p = 0; p < values.size(); ++p) values[p] = lists.front(p).first.value;
+  std::vector<std::uint32_t> values;
+  values.reserve(lists.pixel_count());
+  for (int y = 0; y < lists.height(); ++y) {
+    for (int x = 0; x < lists.width(); ++x) values.push_back(lists.first(lists.pixel(x, y)).value);
+  }
   return values;
 }
 
@@ -543,9 +786,8 @@ double ViewCost::total() const {
   double bits = 0;
   for (const ViewState& view : views_) {
     if (measure_ == ViewMeasure::image) {
-      const std::size_t pixels =
-          static_cast<std::size_t>(view.lists.width()) * static_cast<std::size_t>(view.lists.height());
-      for (std::size_t p = 0; p < pixels; ++p) sum += error(view.lists.front(p));
+      for (std::size_t p = 0; p < view.original.size(); ++p)  // what fills up is equal
+        sum += squared_difference(view.lists.first(p).value, view.original[p]);
     } else {
       std::int64_t logs = 0;
       for (const std::uint32_t n : view.count) logs += n_log_n_[n];
@@ -559,7 +801,7 @@ double ViewCost::total() const {
 std::size_t ViewCost::bytes() const {
   std::size_t sum = shown_.bytes() + n_log_n_.size() * sizeof(std::int64_t);
   for (const ViewState& view : views_) {
-    sum += view.lists.bytes() + view.count.size() * sizeof(std::uint32_t);
+    sum += view.lists.bytes() + (view.count.size() + view.original.size()) * sizeof(std::uint32_t);
   }
   return sum;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fovea/base/context.h"
+#include "fovea/base/team.h"
 #include "fovea/render/fragment_lists.h"
 #include "fovea/simplify/collapse_state.h"
 #include "fovea/simplify/face_values.h"
@@ -53,7 +54,7 @@ class ViewCost {
   /// Renders what is shown, views in parallel. All must outlive this. `size` is that of the views;
   /// `originals` [#views][#pixels] are the colours to compare with, those of now if there are none.
   ViewCost(const CollapseState& state, ShownSurface& shown, const FaceValues& values, ViewMeasure measure,
-           int size, std::vector<std::vector<std::uint32_t>> originals, const Context& context);
+           int size, std::vector<std::vector<std::uint32_t>> originals, const Context& context, Team& team);
   ~ViewCost();
 
   /// Memory of a thread that prices.
@@ -93,17 +94,15 @@ class ViewCost {
 
  private:
   struct ViewState {
-    FragmentLists lists;               // with notes, see below
-    std::vector<std::uint32_t> count;  // [#regions], their pixels, those of the background first (entropy)
+    FragmentLists lists;
+    std::vector<std::uint32_t> count;     // [#regions], their pixels, those of the background first (entropy)
+    std::vector<std::uint32_t> original;  // [#pixels of the lists], what they showed at first (image)
   };
-  // Notes of pixels (image): what they showed at first, and how far what they show now is from that.
-  static std::uint32_t original(const FrontPixel& pixel) { return pixel.notes[0]; }
-  static std::int32_t error(const FrontPixel& pixel) { return static_cast<std::int32_t>(pixel.notes[1]); }
   template <class Change>
   void for_showings(std::span<const std::uint32_t> faces, Change&& change);
   void put_in(std::size_t view, const ShownInstance& showing, std::uint32_t f);
   void take_out(std::size_t view, const ShownInstance& showing, std::uint32_t f);
-  void swap_value(ViewState& view, std::size_t pixel, const Fragment& before, const Fragment& after) const;
+  void swap_value(ViewState& view, const Fragment& before, const Fragment& after) const;
   std::array<ScreenVertex, 3> corners(std::size_t view, const ShownInstance& showing, std::uint32_t f) const;
   double along(std::uint32_t a, std::uint32_t b, Vec3d p) const;
   void gather(std::uint32_t a, std::uint32_t b, Vec3d p, const ValueMerge& merge, Scratch& scratch) const;
@@ -112,11 +111,15 @@ class ViewCost {
                        const ScreenVertex* merged) const;
   void add_change(double limit, Scratch& scratch, PartialChange& part) const;
   void look_at(std::size_t view, Scratch& scratch) const;
-  void lay_row(std::size_t view, std::size_t row, Scratch& scratch) const;
+  void lay_faces(std::size_t view, Scratch& scratch) const;
+  void lay_spans(std::size_t view, std::size_t i, Scratch& scratch) const;
   const FaceValues::Shading& shading(Scratch& scratch, std::size_t i, std::size_t view) const;
   static Fragment nearest_that_stays(const FragmentLists& lists, std::size_t pixel, const Scratch& scratch);
   template <class Change>
   void for_changes(std::size_t view, Scratch& scratch, Change&& change) const;
+  template <class Change>
+  void ask(std::size_t view, int x, int y, float nearness, std::uint32_t face, Scratch& scratch,
+           Change&& change) const;
   std::int64_t change_of_image(std::size_t view, Scratch& scratch) const;
   std::int64_t change_of_entropy(std::size_t view, Scratch& scratch) const;
 
@@ -124,7 +127,7 @@ class ViewCost {
   ShownSurface& shown_;
   const FaceValues& values_;
   const ViewMeasure measure_;
-  const Context& context_;
+  Team& team_;
   std::vector<ViewState> views_;
   std::vector<std::int64_t> n_log_n_;  // [#pixels + 1] n log₂ n, in units of 1 / log_scale_
   double log_scale_ = 1;

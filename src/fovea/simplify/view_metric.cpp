@@ -34,6 +34,7 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
                        const SimplifyOptions& options, Context& context)
     : state_(state),
       context_(context),
+      team_(context),
       model_(model),
       mesh_index_(mesh_index),
       placement_(options.placement),
@@ -74,7 +75,7 @@ void ViewMetric::make_cost(std::span<const View> views, Pictures originals) {
                                          mesh_index_, context_);
   cost_ = std::make_unique<ViewCost>(state_, *shown_, *values_,
                                      is_image() ? ViewMeasure::image : ViewMeasure::entropy, size_,
-                                     std::move(originals), context_);
+                                     std::move(originals), context_, team_);
 }
 
 void ViewMetric::look(std::span<const VertexField* const> importance) {

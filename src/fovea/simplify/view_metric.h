@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/base/context.h"
+#include "fovea/base/team.h"
 #include "fovea/model/model.h"
 #include "fovea/simplify/edge_cost.h"
 #include "fovea/simplify/face_values.h"
@@ -71,6 +72,8 @@ class ViewMetric {
   void lose(std::span<const std::uint32_t> faces) { cost_->take_out(faces); }
 
   const ViewCost& cost() const { return *cost_; }
+  /// For prices of several edges at once.
+  Team& team() { return team_; }
 
  private:
   /// How much the quadric error (distance² × area, in diagonals) counts beside the share of all pixels that
@@ -86,6 +89,7 @@ class ViewMetric {
 
   const CollapseState& state_;
   const Context& context_;
+  Team team_;
   const Model& model_;
   const std::span<const std::size_t> mesh_index_;
   const Placement placement_;

@@ -21,39 +21,6 @@ namespace {
 
 constexpr std::size_t kNoImage = std::numeric_limits<std::size_t>::max();
 
-/// A row of a transform of texture coordinates.
-struct UvRow {
-  float u, v, offset;
-};
-
-/// The texels of a row or column of `size` in which a sampler finds transformed points: `nearest_texel` of
-/// what is usable.
-FOVEA_WIDE void find_texels(const WideFloats& __restrict u, const WideFloats& __restrict v, UvRow row,
-                            int size, Wrap wrap, WideInts& __restrict out) {
-  WideFloats x;
-  for (std::size_t i = 0; i < kWide; ++i) {
-    const float a = row.u * u[i] + row.v * v[i] + row.offset;
-    x[i] = std::abs(a) < kMostTurns ? a : 0.0f;
-  }
-  if (wrap == Wrap::mirror) {
-    for (float& a : x) a *= 0.5f;
-  }
-  if (wrap != Wrap::clamp) {
-    for (float& a : x) {
-      const auto whole = static_cast<float>(static_cast<std::int32_t>(a));
-      a -= whole > a ? whole - 1 : whole;
-    }
-  }
-  if (wrap == Wrap::mirror) {
-    for (float& a : x) a = a > 0.5f ? 2 - 2 * a : 2 * a;
-  }
-  for (std::size_t i = 0; i < kWide; ++i) {
-    const float a = x[i] > 0 ? (x[i] < 1 ? x[i] : 1.0f) : 0.0f;
-    const auto texel = static_cast<std::int32_t>(a * static_cast<float>(size));
-    out[i] = texel < size ? texel : size - 1;
-  }
-}
-
 /// Whether a layer has a value at the first corner of a face; then it has for the whole part.
 bool covers(const AttributeLayer* layer, std::uint32_t face) {
   return layer != nullptr && layer->corner_value[std::size_t{3} * face].valid();
@@ -216,27 +183,13 @@ class RegionFinder {
   std::map<Look, std::uint32_t> first_of_look_;
 };
 
-void PartRegions::regions_at(FaceId face, const WideFloats& u, const WideFloats& v, WideWords& out) const {
-  if (texel_label_.empty()) {
-    out.fill(face_label_.empty() ? first_ : first_ + face_label_[face.index()]);
-    return;
-  }
-  WideInts x, y;
-  find_texels(u, v, {matrix_.u.x, matrix_.v.x, matrix_.offset.x}, width_, wrap_u_, x);
-  find_texels(u, v, {matrix_.u.y, matrix_.v.y, matrix_.offset.y}, height_, wrap_v_, y);
-  for (std::size_t i = 0; i < kWide; ++i) {
-    const auto row = static_cast<std::size_t>(y[i]) * static_cast<std::size_t>(width_);
-    out[i] = first_ + texel_label_[row + static_cast<std::size_t>(x[i])];
-  }
-}
-
 std::uint32_t ModelRegions::region_at(std::size_t mesh, FaceId face, Vec2f uv) const {
-  WideFloats u, v;
-  u.fill(uv.x);
-  v.fill(uv.y);
-  WideWords regions;
-  part(mesh, model_->meshes[mesh].surface.face_part[face.index()]).regions_at(face, u, v, regions);
-  return regions[0];
+  const PartRegions& regions = part(mesh, model_->meshes[mesh].surface.face_part[face.index()]);
+  if (!regions.is_textured()) return regions.region_of(face);
+  const WideFloats u = WideFloats{} + uv.x, v = WideFloats{} + uv.y;
+  WideWords texels;
+  regions.texels_at(u, v, texels);
+  return regions.region_of_texel(texels[0]);
 }
 
 ModelRegions model_regions(const Model& model, const SegmentOptions& options, Context& context) {

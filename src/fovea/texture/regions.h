@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -7,9 +8,11 @@
 
 #include "fovea/base/context.h"
 #include "fovea/base/math.h"
+#include "fovea/base/prefetch.h"
 #include "fovea/base/wide.h"
 #include "fovea/model/ids.h"
 #include "fovea/model/model.h"
+#include "fovea/model/wrap.h"
 #include "fovea/texture/felzenszwalb.h"
 
 namespace fovea {
@@ -17,15 +20,53 @@ namespace fovea {
 /// The region of what no triangle covers.
 inline constexpr std::uint32_t kBackground = 0;
 
+namespace regions {
+
+/// A row of a transform of texture coordinates.
+struct UvRow {
+  float u, v, offset;
+};
+
+/// The texels of a row or column of `size` in which a sampler finds transformed points: `nearest_texel` of
+/// what is usable.
+FOVEA_WIDE_PART void find_texels(const WideFloats& u, const WideFloats& v, UvRow row, int size, Wrap wrap,
+                                 WideInts& out) {
+  WideFloats x = row.u * u + row.v * v + row.offset;
+  x = ((x < kMostTurns) & (x > -kMostTurns)) ? x : 0.0f;
+  if (wrap == Wrap::mirror) x *= 0.5f;
+  if (wrap != Wrap::clamp) {
+    WideInts cut;
+    convert(x, cut);
+    WideFloats whole;
+    convert(cut, whole);
+    x -= whole > x ? whole - 1 : whole;
+  }
+  if (wrap == Wrap::mirror) x = x > 0.5f ? 2 - 2 * x : 2 * x;
+  x = x > 0 ? (x < 1 ? x : 1.0f) : 0.0f;
+  convert(x * static_cast<float>(size), out);
+  out = out < size ? out : size - 1;
+}
+
+}  // namespace regions
+
 /// The regions of one part of a mesh, ready to be looked up for each pixel. Refers to a ModelRegions.
 class PartRegions {
  public:
-  /// The set of texture coordinates that `region_at` wants; -1 if it looks at none.
+  /// The set of texture coordinates that `texels_at` wants; -1 if it looks at none.
   int uv_set() const { return uv_set_; }
-  /// The regions of points of a triangle of the mesh, given the texture coordinates there as the mesh has
-  /// them: the material's transform and its sampler's wrapping are applied here, as in pictures without
-  /// filters. What is then not finite, or beyond a million, counts as 0. O(1): a texel is read for each.
-  void regions_at(FaceId face, const WideFloats& u, const WideFloats& v, WideWords& out) const;
+  /// Whether a point's region depends on where in a texture it is, or on its face alone.
+  bool is_textured() const { return !texel_label_.empty(); }
+  std::uint32_t region_of(FaceId face) const {
+    return face_label_.empty() ? first_ : first_ + face_label_[face.index()];
+  }
+  /// The texels of points, given the texture coordinates there as the mesh has them: the material's transform
+  /// and its sampler's wrapping are applied here, as in pictures without filters. What is then not finite, or
+  /// beyond a million, counts as 0.
+  void texels_at(const WideFloats& u, const WideFloats& v, WideWords& out) const;
+  /// Apart from the above, as most of the time goes into waiting for it: `prefetch` it as soon as it is
+  /// known.
+  std::uint32_t region_of_texel(std::uint32_t texel) const { return first_ + texel_label_[texel]; }
+  void prefetch_texel(std::uint32_t texel) const { prefetch(&texel_label_[texel]); }
 
  private:
   friend class RegionFinder;
@@ -39,6 +80,13 @@ class PartRegions {
   std::span<const std::uint32_t> face_label_;  // [#F], or empty
 };
 
+FOVEA_WIDE_PART void PartRegions::texels_at(const WideFloats& u, const WideFloats& v, WideWords& out) const {
+  WideInts x, y;
+  regions::find_texels(u, v, {matrix_.u.x, matrix_.v.x, matrix_.offset.x}, width_, wrap_u_, x);
+  regions::find_texels(u, v, {matrix_.u.y, matrix_.v.y, matrix_.offset.y}, height_, wrap_v_, y);
+  out = reinterpret_cast<WideWords>(y) * static_cast<std::uint32_t>(width_) + reinterpret_cast<WideWords>(x);
+}
+
 /// The regions of a model. Refers to the model, which must outlive it.
 class ModelRegions {
  public:
@@ -48,7 +96,7 @@ class ModelRegions {
   /// How many there are, with the background.
   std::uint32_t count() const { return count_; }
   const PartRegions& part(std::size_t mesh, std::uint32_t part) const { return parts_[mesh][part]; }
-  /// The region of a point of a triangle; `uv` as `PartRegions::regions_at` wants it.
+  /// The region of a point of a triangle; `uv` as `PartRegions::texels_at` wants it.
   std::uint32_t region_at(std::size_t mesh, FaceId face, Vec2f uv) const;
 
  private:
