@@ -1,6 +1,7 @@
 #include "fovea/base/team.h"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace fovea {
@@ -24,7 +25,12 @@ inline void pause() {
 Team::Team(const Context& context) {
   const int machine = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
   const int threads = std::min(context.thread_count(), machine);
-  for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+  helpers_.reserve(static_cast<std::size_t>(threads));
+  try {
+    for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+  } catch (const std::system_error&) {
+    // The machine has no more threads to give: those that there are do the work.
+  }
 }
 
 Team::~Team() {
