@@ -17,16 +17,14 @@ struct CollapseFace {
   std::array<std::uint32_t, 3> edge;    ///< Edge from this corner's vertex to the next corner's.
 };
 
-/// A vertex of the engine, without its quadric: no more than a look at the neighbourhood needs, half a cache
-/// line.
-struct alignas(32) CollapseVertex {
+/// A vertex of the engine: all that the price of an edge needs of its end, one cache line.
+struct alignas(64) CollapseVertex {
   Vec3f position;                    ///< In units of the scene's diagonal, around the mesh's centre.
   std::uint32_t ring_begin = 0;      ///< Where its ring begins in CollapseMesh::corners.
   std::uint32_t ring_size : 30 = 0;  ///< Corners in its ring; 0 without triangles.
   std::uint32_t locked : 1 = 0;      ///< Must stay where it is.
   std::uint32_t refused : 1 = 0;     ///< An edge at it was refused since something changed around it.
-  std::uint32_t mark = 0;            ///< Scratch of whoever looks around; see CollapseMesh::new_mark.
-  std::uint32_t mark_count = 0;      ///< Scratch that holds while `mark` does.
+  VertexQuadric quadric;
 };
 
 /// An edge of the engine, with the half-edges of its triangles (a half-edge is the corner that it starts
@@ -85,7 +83,6 @@ struct EdgeCorners {
 struct CollapseMesh {
   std::vector<CollapseFace> faces;       ///< [#F]
   std::vector<CollapseVertex> vertices;  ///< [#V]
-  std::vector<Quadric> quadrics;         ///< [#V]
   std::vector<CollapseEdge> edges;       ///< [#E]
   std::vector<std::uint32_t> corners;    ///< The rings, with gaps.
   std::size_t live_faces = 0;
@@ -105,6 +102,9 @@ struct CollapseMesh {
     return {face.vertex[n], face.vertex[p], face.edge[k], face.edge[p]};
   }
   Vec3d position(std::uint32_t v) const { return Vec3d(vertices[v].position); }
+  /// The error over the position of a vertex; what attributes can make up for is not taken off.
+  Quadric quadric(std::uint32_t v) const { return vertices[v].quadric.around_origin(position(v)); }
+  void set_quadric(std::uint32_t v, const Quadric& q) { vertices[v].quadric = {q, position(v)}; }
   bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
   bool edge_alive(std::uint32_t e) const { return edges[e].face_count() > 0; }
 
@@ -130,16 +130,13 @@ struct CollapseMesh {
     faces[f].vertex[0] = kInvalid;
     --live_faces;
   }
-  /// A number that no vertex's `mark` has; the three after it are free as well.
-  std::uint32_t new_mark();
-
  private:
   void link_rings();
+  void link_edges();
   /// Room for rings comes in powers of two: a ring has room for at least bit_ceil(its size).
   std::uint32_t take_room(std::uint32_t size);
   void give_room(std::uint32_t begin, std::uint32_t size);
 
-  std::uint32_t last_mark_ = 0;
   std::vector<std::uint32_t> free_room_;  // [log2 of room], first of a list linked through `corners`
 };
 

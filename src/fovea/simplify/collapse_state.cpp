@@ -46,6 +46,9 @@ struct FaceFrame {
   TriangleGradient gradient;
 };
 
+/// What a face adds to its corners, to each as a function of the way from there.
+using CornerQuadrics = std::array<Quadric, 3>;
+
 class Builder {
  public:
   Builder(std::span<const TriMesh* const> meshes, std::span<const double> scales,
@@ -90,7 +93,7 @@ class Builder {
                 std::vector<double>& scratch);
   template <int Width>
   void add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
-                  std::vector<double>& scratch, Quadric& q);
+                  std::vector<double>& scratch, CornerQuadrics& corners);
   void add_edge_quadrics();
   bool is_seam(std::uint32_t corner_a, std::uint32_t corner_b) const;
   void price_components();
@@ -403,7 +406,6 @@ void Builder::scale_channel(Channel& channel) const {
 /// faces for a range of vertices of its own, so that sums come out the same for any number of threads.
 void Builder::add_face_quadrics() {
   CollapseMesh& mesh = state_.mesh;
-  mesh.quadrics.resize(mesh.vertices.size());
   for (Channel& channel : state_.channels) {
     if (channel.kind != ChannelKind::fitted) continue;
     const std::size_t count = channel.values.size() / static_cast<std::size_t>(channel.width);
@@ -423,9 +425,9 @@ void Builder::add_face_quadrics() {
                    }
                  }
                  for (std::size_t v = begin; v < end; ++v) {
-                   Quadric& q = mesh.quadrics[v];
-                   q.add_point(Vec3d(mesh.vertices[v].position),
-                               kRegularization * q.weight * weight_of(static_cast<std::uint32_t>(v)));
+                   Quadric pull;
+                   pull.add_point({}, kRegularization * static_cast<double>(mesh.vertices[v].quadric.weight));
+                   mesh.vertices[v].quadric.add_scaled(pull, weight_of(static_cast<std::uint32_t>(v)));
                  }
                });
 }
@@ -437,32 +439,34 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
   const auto& t = mesh.faces[f].vertex;
   const Vec3d p0 = mesh.position(t[0]);
   const auto [normal, area] = shape_of(f);
-  Quadric q;
-  q.weight = area / 3;
-  q.add_linear(normal, -dot(normal, p0), q.weight);
+  CornerQuadrics corners;
+  corners[0].weight = area / 3;
+  corners[0].add_linear(normal, 0, area / 3);
+  corners[1] = corners[2] = corners[0];
   if (area > 1e-16) {
     const FaceFrame frame{
-        f, m, q.weight, p0,
+        f, m, area / 3, p0,
         TriangleGradient(mesh.position(t[1]) - p0, mesh.position(t[2]) - p0, normal, 2 * area)};
     for (Channel& channel : state_.channels) {
       if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid) continue;
       switch (channel.fit_width) {
-        case 2: add_slopes<2>(channel, frame, begin, end, scratch, q); break;
-        case 3: add_slopes<3>(channel, frame, begin, end, scratch, q); break;
-        default: add_slopes<0>(channel, frame, begin, end, scratch, q);
+        case 2: add_slopes<2>(channel, frame, begin, end, scratch, corners); break;
+        case 3: add_slopes<3>(channel, frame, begin, end, scratch, corners); break;
+        default: add_slopes<0>(channel, frame, begin, end, scratch, corners);
       }
     }
   }
-  for (const std::uint32_t v : t) {
-    if (v >= begin && v < end) mesh.quadrics[v].add_scaled(q, weight_of(v));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t v = t[k];
+    if (v >= begin && v < end) mesh.vertices[v].quadric.add_scaled(corners[k], weight_of(v));
   }
 }
 
-/// Adds how a channel runs over a face, as linear functions in lengths, to the face's quadric and to those
-/// of its values. What is too steep is damped. `Width` is what fits the channel, or 0 for any.
+/// Adds how a channel runs over a face, as linear functions in lengths, to the quadrics of its corners and of
+/// its values. What is too steep is damped. `Width` is what fits the channel, or 0 for any.
 template <int Width>
 void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
-                         std::vector<double>& scratch, Quadric& q) {
+                         std::vector<double>& scratch, CornerQuadrics& corners) {
   const int width = Width > 0 ? Width : channel.fit_width;
   const std::size_t stride = attribute_stride(width);
   scratch.resize(std::max(scratch.size(), stride));
@@ -482,8 +486,8 @@ void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t b
   const double limit = steepness_limit(channel, scale);
   const double share = frame.weight * (steepness > limit ? limit / steepness : 1);
   for (int k = 0; k < width; ++k) {
-    const double* g = slopes + 4 * k;
-    q.add_linear({g[0], g[1], g[2]}, g[3], share);
+    const Vec3d g{slopes[4 * k], slopes[4 * k + 1], slopes[4 * k + 2]};
+    for (std::size_t i = 0; i < 3; ++i) corners[i].add_linear(g, scale * s[i][k], share);
   }
   slopes[4 * width] = 1;
   for (std::size_t i = 0; i < stride; ++i) slopes[i] *= share;
@@ -520,11 +524,11 @@ void Builder::add_edge_quadrics() {
     const std::uint32_t v = mesh.vertex(c), w = mesh.vertex(CollapseMesh::next(c));
     const Vec3d edge = state_.mesh.position(w) - state_.mesh.position(v);
     const Vec3d upright = normalized(cross(shape_of(c / 3).normal, edge));
-    const double d = -dot(upright, state_.mesh.position(v));
-    const double share = 0.5 * weight * dot(edge, edge);
+    Quadric q;  // around both ends: the plane goes through them
+    q.weight = 0.5 * weight * dot(edge, edge);
+    q.add_linear(upright, 0, q.weight);
     for (const std::uint32_t end : {v, w}) {
-      state_.mesh.quadrics[end].add_linear(upright, d, share * weight_of(end));
-      state_.mesh.quadrics[end].weight += share;
+      state_.mesh.vertices[end].quadric.add_scaled(q, weight_of(end));
     }
   };
   for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {

@@ -23,8 +23,9 @@ std::uint32_t CollapseStepper::collapse(std::uint32_t e, Vec3d p, double error) 
   merge_edges(a, b);
   drop_coincident_faces(b);
 
+  const Quadric q = mesh_.quadric(a) + mesh_.quadric(b);
   mesh_.vertices[b].position = Vec3f(p);
-  mesh_.quadrics[b] += mesh_.quadrics[a];
+  mesh_.set_quadric(b, q);
   if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
   if (mesh_.vertices[a].refused) mesh_.vertices[b].refused = 1;
   retire_values(a, b);
@@ -69,21 +70,18 @@ void CollapseStepper::drop_face(std::uint32_t f) {
 
 /// Gives a's triangles and edges to b; two edges to the same neighbour become one.
 void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
-  // A neighbour of b is marked, with its edge to b.
-  const std::uint32_t mark = mesh_.new_mark();
-  const auto note = [&](std::uint32_t w, std::uint32_t e) {
-    mesh_.vertices[w].mark = mark;
-    mesh_.vertices[w].mark_count = e;
-  };
+  // Of a neighbour of b is noted its edge to b, plus one.
+  notes_.clear(2 * (mesh_.ring(a).size() + mesh_.ring(b).size()));
   mesh_.for_ring(b, [&](std::uint32_t c) {
     const CornerView at_c = mesh_.view(c);
-    note(at_c.next, at_c.to_next);
-    note(at_c.previous, at_c.to_previous);
+    notes_[notes_.place(at_c.next)] = at_c.to_next + 1;
+    notes_[notes_.place(at_c.previous)] = at_c.to_previous + 1;
   });
   const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
     const std::uint32_t e = mesh_.edge(half_edge);
-    const std::uint32_t kept = mesh_.vertices[w].mark == mark ? mesh_.vertices[w].mark_count : e;
-    note(w, kept);
+    std::uint32_t& note = notes_[notes_.place(w)];
+    if (note == 0) note = e + 1;
+    const std::uint32_t kept = note - 1;
     if (kept == e) {
       mesh_.edges[e].ends = {b, w};
       return;
@@ -137,7 +135,7 @@ void CollapseStepper::retire_values(std::uint32_t a, std::uint32_t b) {
       bool is_used = false;
       for (const std::uint32_t d : ring) is_used |= channel.corner_value[d] == value;
       if (is_used) continue;
-      mesh_.quadrics[v] += cost_.separate(channel, v, value);
+      mesh_.set_quadric(v, mesh_.quadric(v) + cost_.separate(channel, v, value));
       std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0f);
       retired = true;
     }

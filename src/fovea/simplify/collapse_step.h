@@ -10,6 +10,7 @@
 #include "fovea/simplify/legality.h"
 #include "fovea/simplify/record.h"
 #include "fovea/simplify/value_merge.h"
+#include "fovea/simplify/vertex_notes.h"
 
 namespace fovea {
 
@@ -64,7 +65,9 @@ class CollapseStepper {
     std::uint32_t corner, vertex;
   };
   std::vector<DroppedCorner> dropped_;
-  std::vector<std::uint32_t> ring_;  // scratch
+  // Scratch:
+  VertexNotes notes_;
+  std::vector<std::uint32_t> ring_;
 };
 
 }  // namespace fovea

@@ -222,7 +222,7 @@ void EdgeCost::settle(Quadric& q, std::size_t channel_index, std::uint32_t a, st
 
 Quadric EdgeCost::quadric(std::uint32_t e) const {
   const auto [a, b] = mesh_.edges[e].ends;
-  Quadric q = mesh_.quadrics[a] + mesh_.quadrics[b];
+  Quadric q = mesh_.quadric(a) + mesh_.quadric(b);
   EdgeCorners corners;
   if (has_many(a) || has_many(b)) corners = mesh_.edge_corners(e, a);
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
@@ -257,8 +257,6 @@ std::size_t EdgeCost::fallbacks(std::uint32_t e, const Quadric& q, Candidate* ou
 void EdgeCost::fetch_ends(std::uint32_t e) const {
   for (const std::uint32_t v : mesh_.edges[e].ends) {
     prefetch(&mesh_.vertices[v]);
-    prefetch(&mesh_.quadrics[v]);
-    prefetch(&mesh_.quadrics[v].weight);
     if (state_.channels.empty()) continue;
     prefetch(&slot_[v]);
     prefetch(&state_.channels.front().single[v]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include "fovea/simplify/collapse_state.h"
 #include "fovea/simplify/value_merge.h"
+#include "fovea/simplify/vertex_notes.h"
 
 namespace fovea {
 
@@ -17,7 +19,7 @@ enum class Block { none, topology, last };
 /// what they found there.
 class Legality {
  public:
-  explicit Legality(CollapseState& state) : state_(state) {}
+  explicit Legality(const CollapseState& state) : state_(state) {}
 
   /// Looks at the edge a–b, which the other rules are then about: the link condition (Dey et al. 1999).
   /// The neighbours that a and b share are those across their common triangles, an inner edge does not
@@ -50,13 +52,15 @@ class Legality {
   bool keeps_shape(const Far& face, Vec3d from, Vec3d to) const;
   bool keeps_texture(const Far& face, std::size_t channel, const ValueMerge& merge) const;
 
-  CollapseState& state_;  // for the vertices' marks; nothing else changes
+  const CollapseState& state_;
+  VertexNotes notes_;
   Block topology_ = Block::none;
   std::uint32_t a_ = kInvalid, b_ = kInvalid;
   // With room for more than there is now:
   std::vector<Far> far_;  // those at a, then those at b
   std::size_t far_count_ = 0, far_at_a_ = 0;
-  std::vector<std::uint32_t> across_;                     // vertices opposite to the edge
+  std::vector<std::array<std::uint32_t, 2>> places_;  // in `notes_`, of `next` and `previous` of those at b
+  std::vector<std::uint32_t> across_;                 // places of the vertices opposite to the edge
   std::vector<std::uint32_t> shared_at_a_, shared_at_b_;  // triangles on the edge, as the rings have them
   std::size_t shared_count_ = 0;
 };

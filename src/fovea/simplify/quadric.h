@@ -72,6 +72,50 @@ struct alignas(32) Quadric {
   }
 };
 
+/// A Quadric as a function of the way from its vertex, in single precision. Near the surface all its terms are
+/// small, so that what floats lose is far below the pull towards the original vertices
+/// (kRegularization in collapse_state.cpp); around a point far away they would lose everything.
+struct VertexQuadric {
+  float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  float bx = 0, by = 0, bz = 0;
+  float c = 0;
+  float weight = 0;
+
+  VertexQuadric() = default;
+  /// `q`, for a vertex at `at`.
+  VertexQuadric(const Quadric& q, Vec3d at) {
+    const Vec3d moved = times(q, at), b{q.bx + moved.x, q.by + moved.y, q.bz + moved.z};
+    assign(q, b, q.c + (q.bx + b.x) * at.x + (q.by + b.y) * at.y + (q.bz + b.z) * at.z);
+  }
+  /// As a function of points, of a vertex at `at`.
+  Quadric around_origin(Vec3d at) const {
+    Quadric q{xx, xy, xz, yy, yz, zz, 0, 0, 0, c, weight};
+    const Vec3d moved = times(q, at);
+    q.bx = bx - moved.x, q.by = by - moved.y, q.bz = bz - moved.z;
+    q.c -= (bx + q.bx) * at.x + (by + q.by) * at.y + (bz + q.bz) * at.z;
+    return q;
+  }
+  /// Adds w · q, a function of the way from the vertex as well; its weight is that of q, whatever w.
+  void add_scaled(const Quadric& q, double w) {
+    Quadric sum{xx, xy, xz, yy, yz, zz, bx, by, bz, c, weight};
+    sum.add_scaled(q, w);
+    assign(sum, {sum.bx, sum.by, sum.bz}, sum.c);
+  }
+
+ private:
+  static Vec3d times(const Quadric& q, Vec3d p) {
+    return {q.xx * p.x + q.xy * p.y + q.xz * p.z, q.xy * p.x + q.yy * p.y + q.yz * p.z,
+            q.xz * p.x + q.yz * p.y + q.zz * p.z};
+  }
+  void assign(const Quadric& q, Vec3d b, double value) {
+    const auto f = [](double x) { return static_cast<float>(x); };
+    xx = f(q.xx), xy = f(q.xy), xz = f(q.xz), yy = f(q.yy), yz = f(q.yz), zz = f(q.zz);
+    bx = f(b.x), by = f(b.y), bz = f(b.z);
+    c = f(value);
+    weight = f(q.weight);
+  }
+};
+
 /// The part of an attribute's quadric that depends on its value (Hoppe 1999, eq. 8–12). With s the
 /// value of one component at the vertex, the summed squared deviations from the linear functions
 /// g·p + d of the triangles around are
