@@ -422,12 +422,15 @@ void Engine::fetch_neighbors(const Due& due) const {
   });
 }
 
-/// What the triangles on the edge leave when they go.
+/// What its vertices and the triangles on the edge leave when they go.
 void Engine::fetch_leftovers(const Due& due) const {
+  for (const std::uint32_t v : mesh_.edges[due.item].ends) prefetch(&state_.mesh_vertex[v]);
   if (!mesh_.edges[due.item].is_listed()) return;
   for (const std::uint32_t half_edge : mesh_.edges[due.item].half_edges) {
     if (half_edge == kInvalid) continue;
-    prefetch(mesh_.ring(mesh_.vertex(CollapseMesh::previous(half_edge))).data());
+    const std::uint32_t across = mesh_.vertex(CollapseMesh::previous(half_edge));
+    prefetch(mesh_.ring(across).data());
+    if (!state_.channels.empty()) cost_.fetch_slot(across);
     prefetch(&state_.mesh_face[half_edge / 3]);
   }
 }

@@ -90,15 +90,18 @@ struct CollapseMesh {
   /// Builds rings and edges from `vertex` of all faces, which are distinct. O(#F).
   void link();
 
-  // Calculated rather than chosen: compilers make branches of choices, and nothing foretells these.
-  static std::uint32_t next(std::uint32_t c) { return c + 1 - 3 * (c % 3 == 2); }
-  static std::uint32_t previous(std::uint32_t c) { return c - 1 + 3 * (c % 3 == 0); }
+  // Calculated rather than chosen: compilers make branches of choices, and nothing foretells these. The two
+  // constants are lists of two-bit numbers, for the corners 0, 1 and 2: 1 2 0 and 2 0 1.
+  static std::uint32_t after(std::uint32_t k) { return 0b00'10'01 >> 2 * k & 3; }
+  static std::uint32_t before(std::uint32_t k) { return 0b01'00'10 >> 2 * k & 3; }
+  static std::uint32_t next(std::uint32_t c) { return c - c % 3 + after(c % 3); }
+  static std::uint32_t previous(std::uint32_t c) { return c - c % 3 + before(c % 3); }
   std::uint32_t vertex(std::uint32_t c) const { return faces[c / 3].vertex[c % 3]; }
   std::uint32_t edge(std::uint32_t c) const { return faces[c / 3].edge[c % 3]; }
   std::uint32_t& edge(std::uint32_t c) { return faces[c / 3].edge[c % 3]; }
   CornerView view(std::uint32_t c) const {
     const CollapseFace& face = faces[c / 3];
-    const std::uint32_t k = c % 3, n = next(k), p = previous(k);
+    const std::uint32_t k = c % 3, n = after(k), p = before(k);
     return {face.vertex[n], face.vertex[p], face.edge[k], face.edge[p]};
   }
   Vec3d position(std::uint32_t v) const { return Vec3d(vertices[v].position); }

@@ -568,9 +568,16 @@ void Builder::price_components() {
 }  // namespace
 
 std::uint32_t CollapseState::find_slot(std::uint32_t item, std::uint32_t MeshSlot::*first) const {
-  const auto after = std::upper_bound(slots.begin(), slots.end(), item,
-                                      [&](std::uint32_t x, const MeshSlot& slot) { return x < slot.*first; });
-  return static_cast<std::uint32_t>(after - slots.begin()) - 1;
+  // All the same for a few: nothing foretells which half is right.
+  constexpr std::size_t kFew = 8;
+  const auto is_after = [&](std::uint32_t x, const MeshSlot& slot) { return x < slot.*first; };
+  if (slots.size() > kFew) {
+    const auto after = std::upper_bound(slots.begin(), slots.end(), item, is_after);
+    return static_cast<std::uint32_t>(after - slots.begin()) - 1;
+  }
+  std::uint32_t slot = 0;
+  for (std::size_t i = 1; i < slots.size(); ++i) slot += !is_after(item, slots[i]);
+  return slot;
 }
 
 CollapseState make_collapse_state(std::span<const TriMesh* const> meshes, std::span<const double> scales,

@@ -19,8 +19,13 @@ std::uint32_t CollapseStepper::collapse(std::uint32_t e, Vec3d p, double error) 
   if (views_ != nullptr) views_->before_collapse(a, b, p);
   merge_.apply(a, b, m, record_);
   dropped_.clear();
+  note_twins(a, b);
   for (const std::uint32_t f : legality_.shared_faces(a)) drop_face(f);
-  merge_edges(a, b);
+  if (legality_.is_plain()) {
+    merge_twins(a, b);
+  } else {
+    merge_edges(a, b);
+  }
   drop_coincident_faces(b);
 
   const Quadric q = mesh_.quadric(a) + mesh_.quadric(b);
@@ -60,12 +65,49 @@ void CollapseStepper::leave_edge(std::uint32_t e, std::uint32_t half_edge) {
 
 void CollapseStepper::drop_face(std::uint32_t f) {
   for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
-    if (cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
+    if (has_values_ && cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
     leave_edge(mesh_.edge(c), c);
     mesh_.unlink_corner(c);
   }
   mesh_.kill_face(f);
   record_.removed_faces.push_back(state_.mesh_face[f]);
+}
+
+/// Notes which edges of the faces between a and b become one.
+void CollapseStepper::note_twins(std::uint32_t a, std::uint32_t b) {
+  twins_.clear();
+  for (const std::uint32_t f : legality_.shared_faces(a)) {
+    const CollapseFace& face = mesh_.faces[f];
+    const auto k = static_cast<std::uint32_t>(std::find(face.vertex.begin(), face.vertex.end(), a) -
+                                              face.vertex.begin());
+    const std::uint32_t n = CollapseMesh::after(k), p = CollapseMesh::before(k);
+    // Of the other two corners one is b's, and the edge between them is its edge to the other.
+    twins_.push_back({face.edge[face.vertex[n] == b ? p : k], face.edge[n]});
+  }
+}
+
+/// Gives a's triangles and edges to b, where only edges of the faces between them become one.
+void CollapseStepper::merge_twins(std::uint32_t a, std::uint32_t b) {
+  std::erase_if(twins_, [&](const TwinEdges& twins) { return !mesh_.edge_alive(twins.at_b); });
+  const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
+    const std::uint32_t e = mesh_.edge(half_edge);
+    std::uint32_t kept = e;
+    for (const TwinEdges& twins : twins_) kept = twins.at_a == e ? twins.at_b : kept;
+    if (kept == e) {
+      mesh_.edges[e].ends = {b, w};
+      return;
+    }
+    mesh_.edge(half_edge) = kept;
+    mesh_.edges[kept].add(half_edge);
+    leave_edge(e, half_edge);
+  };
+  mesh_.for_ring(a, [&](std::uint32_t c) {
+    const CornerView at_c = mesh_.view(c);
+    take_over(c, at_c.next);
+    take_over(CollapseMesh::previous(c), at_c.previous);
+    mesh_.faces[c / 3].vertex[c % 3] = b;
+  });
+  mesh_.join_rings(a, b);
 }
 
 /// Gives a's triangles and edges to b; two edges to the same neighbour become one.

@@ -31,7 +31,8 @@ class CollapseStepper {
         queue_(queue),
         views_(views),
         record_(record),
-        error_(error) {}
+        error_(error),
+        has_values_(!state.channels.empty()) {}
 
   /// Collapses edge e to p, as `merge` has planned it and `legality` looked at it. Returns the vertex that is
   /// left. O(one-rings).
@@ -42,7 +43,9 @@ class CollapseStepper {
   double error() const { return error_; }
 
  private:
+  void note_twins(std::uint32_t a, std::uint32_t b);
   void merge_edges(std::uint32_t a, std::uint32_t b);
+  void merge_twins(std::uint32_t a, std::uint32_t b);
   void drop_coincident_faces(std::uint32_t b);
   void leave_edge(std::uint32_t e, std::uint32_t half_edge);
   void drop_face(std::uint32_t f);
@@ -59,12 +62,18 @@ class CollapseStepper {
   ViewMetric* const views_;
   CollapseRecord& record_;
   double error_;
+  const bool has_values_;
 
   /// A corner of a face that was dropped, at a vertex of several values.
   struct DroppedCorner {
     std::uint32_t corner, vertex;
   };
   std::vector<DroppedCorner> dropped_;
+  /// Edges of a dropped face that become one.
+  struct TwinEdges {
+    std::uint32_t at_a, at_b;
+  };
+  std::vector<TwinEdges> twins_;
   // Scratch:
   VertexNotes notes_;
   std::vector<std::uint32_t> ring_;

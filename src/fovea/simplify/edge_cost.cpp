@@ -4,7 +4,6 @@
 #include <array>
 #include <type_traits>
 
-#include "fovea/base/prefetch.h"
 #include "fovea/simplify/value_classes.h"
 
 namespace fovea {
@@ -224,6 +223,7 @@ Quadric EdgeCost::quadric(std::uint32_t e) const {
   const auto [a, b] = mesh_.edges[e].ends;
   Quadric q = mesh_.quadric(a) + mesh_.quadric(b);
   EdgeCorners corners;
+  if (state_.channels.empty()) return q;
   if (has_many(a) || has_many(b)) corners = mesh_.edge_corners(e, a);
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
     const Channel& channel = state_.channels[i];

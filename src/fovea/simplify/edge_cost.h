@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/base/prefetch.h"
 #include "fovea/simplify/collapse_state.h"
 
 namespace fovea {
@@ -52,6 +53,7 @@ class EdgeCost {
   void fetch_ends(std::uint32_t e) const;
   void fetch_values(std::uint32_t e) const;
   void fetch_seams(std::uint32_t e) const;
+  void fetch_slot(std::uint32_t v) const { prefetch(&slot_[v]); }
 
  private:
   /// The values of one channel at a vertex that has several.

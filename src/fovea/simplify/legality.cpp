@@ -71,6 +71,7 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
     common_across += (note & (kBoth | kCounted)) == kBoth;
     note |= kCounted;
   }
+  is_plain_ = common == shared_at_b && common_across == shared_at_b;
   std::size_t coincident = 0;
   for (std::size_t i = far_at_a_; i < far && common >= 2; ++i) {
     const auto [c, n, p] = far_[i];
