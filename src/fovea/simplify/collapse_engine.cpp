@@ -424,7 +424,15 @@ void Engine::fetch_neighbors(const Due& due) const {
 
 /// What its vertices and the triangles on the edge leave when they go.
 void Engine::fetch_leftovers(const Due& due) const {
-  for (const std::uint32_t v : mesh_.edges[due.item].ends) prefetch(&state_.mesh_vertex[v]);
+  for (const std::uint32_t v : mesh_.edges[due.item].ends) {
+    prefetch(&state_.mesh_vertex[v]);
+    for (const Channel& channel : state_.channels) {
+      const std::uint32_t value = channel.single[v];
+      if (value >= Channel::kMany) continue;
+      prefetch(channel.value(value));
+      prefetch(&channel.layer_value[value]);
+    }
+  }
   if (!mesh_.edges[due.item].is_listed()) return;
   for (const std::uint32_t half_edge : mesh_.edges[due.item].half_edges) {
     if (half_edge == kInvalid) continue;

@@ -22,7 +22,7 @@ void CollapseMesh::link_edges() {
   };
   std::vector<Last> last_edge(vertices.size());  // that came to a vertex
   edges.clear();
-  edges.reserve(faces.size() * 3 / 2 + 3);
+  edges.reserve(vertices.size() + faces.size() + 64);  // by Euler's formula there are hardly more
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
     const auto number = [&](std::uint32_t half_edge, std::uint32_t other) {
       if (other < v) return;

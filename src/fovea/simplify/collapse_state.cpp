@@ -46,8 +46,31 @@ struct FaceFrame {
   TriangleGradient gradient;
 };
 
-/// What a face adds to its corners, to each as a function of the way from there.
-using CornerQuadrics = std::array<Quadric, 3>;
+/// What a face adds to its corners, to each as a function of the way from there: the squares are the same for
+/// all.
+struct CornerQuadrics {
+  Quadric squares;
+  struct Rest {
+    Vec3d b;
+    double c = 0;
+  };
+  std::array<Rest, 3> rest;
+
+  /// Adds w · (g·way + d)² with the corners' own d.
+  void add_linear(Vec3d g, std::array<double, 3> d, double w) {
+    squares.add_linear(g, 0, w);
+    for (std::size_t k = 0; k < 3; ++k) {
+      rest[k].b += w * d[k] * g;
+      rest[k].c += w * d[k] * d[k];
+    }
+  }
+  Quadric at(std::size_t k) const {
+    Quadric q = squares;
+    q.bx = rest[k].b.x, q.by = rest[k].b.y, q.bz = rest[k].b.z;
+    q.c = rest[k].c;
+    return q;
+  }
+};
 
 class Builder {
  public:
@@ -440,9 +463,8 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
   const Vec3d p0 = mesh.position(t[0]);
   const auto [normal, area] = shape_of(f);
   CornerQuadrics corners;
-  corners[0].weight = area / 3;
-  corners[0].add_linear(normal, 0, area / 3);
-  corners[1] = corners[2] = corners[0];
+  corners.squares.weight = area / 3;
+  corners.squares.add_linear(normal, 0, area / 3);
   if (area > 1e-16) {
     const FaceFrame frame{
         f, m, area / 3, p0,
@@ -458,7 +480,7 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t v = t[k];
-    if (v >= begin && v < end) mesh.vertices[v].quadric.add_scaled(corners[k], weight_of(v));
+    if (v >= begin && v < end) mesh.vertices[v].quadric.add_scaled(corners.at(k), weight_of(v));
   }
 }
 
@@ -487,15 +509,15 @@ void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t b
   const double share = frame.weight * (steepness > limit ? limit / steepness : 1);
   for (int k = 0; k < width; ++k) {
     const Vec3d g{slopes[4 * k], slopes[4 * k + 1], slopes[4 * k + 2]};
-    for (std::size_t i = 0; i < 3; ++i) corners[i].add_linear(g, scale * s[i][k], share);
+    corners.add_linear(g, {scale * s[0][k], scale * s[1][k], scale * s[2][k]}, share);
   }
   slopes[4 * width] = 1;
   for (std::size_t i = 0; i < stride; ++i) slopes[i] *= share;
-  for (std::uint32_t c = 3 * frame.face; c < 3 * frame.face + 3; ++c) {
-    const std::uint32_t v = state_.mesh.vertex(c);
-    if (v < begin || v >= end) continue;
-    const double weight = weight_of(v);
-    float* const value = channel.value_quadric(channel.corner_value[c]);
+  const std::array<std::uint32_t, 3>& vertices = state_.mesh.faces[frame.face].vertex;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (vertices[k] < begin || vertices[k] >= end) continue;
+    const double weight = weight_of(vertices[k]);
+    float* const value = channel.value_quadric(channel.corner_value[3 * frame.face + k]);
     for (std::size_t i = 0; i < stride; ++i) value[i] += static_cast<float>(weight * slopes[i]);
   }
 }
@@ -549,6 +571,7 @@ void Builder::add_edge_quadrics() {
 void Builder::price_components() {
   state_.components = find_components(state_.mesh);
   state_.vanish.resize(state_.components.count());
+  if (state_.vanish.size() < 2) return;  // the last one never vanishes
   for (std::size_t i = 0; i < state_.vanish.size(); ++i) {
     Box box;
     double weight = 0;
