@@ -46,6 +46,12 @@ struct FaceFrame {
   TriangleGradient gradient;
 };
 
+/// Room for the slopes of attributes of any width.
+struct SlopeScratch {
+  std::vector<double> slopes;
+  std::vector<float> rounded;
+};
+
 /// What a face adds to its corners, to each as a function of the way from there: the squares are the same for
 /// all.
 struct CornerQuadrics {
@@ -113,10 +119,10 @@ class Builder {
   void scale_channel(Channel& channel) const;
   void add_face_quadrics();
   void add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
-                std::vector<double>& scratch);
+                SlopeScratch& scratch);
   template <int Width>
   void add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
-                  std::vector<double>& scratch, CornerQuadrics& corners);
+                  SlopeScratch& scratch, CornerQuadrics& corners);
   void add_edge_quadrics();
   bool is_seam(std::uint32_t corner_a, std::uint32_t corner_b) const;
   void price_components();
@@ -438,7 +444,7 @@ void Builder::add_face_quadrics() {
   const auto ranges = static_cast<std::size_t>(std::min(context_.thread_count(), kMostRanges));
   parallel_for(context_, mesh.vertices.size(), mesh.vertices.size() / ranges + 1,
                [&](std::size_t begin, std::size_t end) {
-                 std::vector<double> scratch;
+                 SlopeScratch scratch;
                  std::uint32_t f = 0;
                  for (std::uint32_t m = 0; m < meshes_.size(); ++m) {
                    for (std::size_t k = 0; k < face_count(m); ++k, ++f) {
@@ -449,7 +455,7 @@ void Builder::add_face_quadrics() {
                  }
                  for (std::size_t v = begin; v < end; ++v) {
                    Quadric pull;
-                   pull.add_point({}, kRegularization * static_cast<double>(mesh.vertices[v].quadric.weight));
+                   pull.add_point({}, kRegularization * static_cast<double>(mesh.vertices[v].quadric.weight()));
                    mesh.vertices[v].quadric.add_scaled(pull, weight_of(static_cast<std::uint32_t>(v)));
                  }
                });
@@ -457,7 +463,7 @@ void Builder::add_face_quadrics() {
 
 /// Adds face f of mesh m to those of its corners whose vertices are in [begin, end).
 void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
-                       std::vector<double>& scratch) {
+                       SlopeScratch& scratch) {
   CollapseMesh& mesh = state_.mesh;
   const auto& t = mesh.faces[f].vertex;
   const Vec3d p0 = mesh.position(t[0]);
@@ -488,11 +494,18 @@ void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std:
 /// its values. What is too steep is damped. `Width` is what fits the channel, or 0 for any.
 template <int Width>
 void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
-                         std::vector<double>& scratch, CornerQuadrics& corners) {
+                         SlopeScratch& scratch, CornerQuadrics& corners) {
   const int width = Width > 0 ? Width : channel.fit_width;
   const std::size_t stride = attribute_stride(width);
-  scratch.resize(std::max(scratch.size(), stride));
-  double* const slopes = scratch.data();  // in the layout of attribute quadrics
+  // In the layout of attribute quadrics, and the same rounded:
+  std::array<double, attribute_stride(Width)> slopes_here;
+  std::array<float, attribute_stride(Width)> rounded_here;
+  if constexpr (Width == 0) {
+    scratch.slopes.resize(std::max(scratch.slopes.size(), stride));
+    scratch.rounded.resize(scratch.slopes.size());
+  }
+  double* const slopes = Width > 0 ? slopes_here.data() : scratch.slopes.data();
+  float* const rounded = Width > 0 ? rounded_here.data() : scratch.rounded.data();
   const double scale = channel.scale[frame.mesh];
   std::array<const float*, 3> s;
   for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * frame.face + k]);
@@ -512,12 +525,19 @@ void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t b
     corners.add_linear(g, {scale * s[0][k], scale * s[1][k], scale * s[2][k]}, share);
   }
   slopes[4 * width] = 1;
-  for (std::size_t i = 0; i < stride; ++i) slopes[i] *= share;
+  for (std::size_t i = 0; i < stride; ++i) {
+    slopes[i] *= share;
+    rounded[i] = static_cast<float>(slopes[i]);
+  }
   const std::array<std::uint32_t, 3>& vertices = state_.mesh.faces[frame.face].vertex;
   for (std::size_t k = 0; k < 3; ++k) {
     if (vertices[k] < begin || vertices[k] >= end) continue;
-    const double weight = weight_of(vertices[k]);
     float* const value = channel.value_quadric(channel.corner_value[3 * frame.face + k]);
+    if (importance_weight_.empty()) {
+      for (std::size_t i = 0; i < stride; ++i) value[i] += rounded[i];
+      continue;
+    }
+    const double weight = importance_weight_[vertices[k]];
     for (std::size_t i = 0; i < stride; ++i) value[i] += static_cast<float>(weight * slopes[i]);
   }
 }

@@ -124,14 +124,14 @@ bool Legality::shape(Vec3d p) const {
   return true;
 }
 
-bool Legality::keeps_texture(const Far& face, std::size_t channel_index, const ValueMerge& merge) const {
+/// `planned` is what the corner's texture coordinates become.
+bool Legality::keeps_texture(const Far& face, std::size_t channel_index, const float* planned) const {
   const Channel& channel = state_.channels[channel_index];
   const std::uint32_t own = channel.corner_value[face.corner];
-  if (own == kInvalid) return true;
   const auto uv = [](const float* x) { return Vec2d{x[0], x[1]}; };
   const Vec2d q1 = uv(channel.value(channel.corner_value[CollapseMesh::next(face.corner)])),
               q2 = uv(channel.value(channel.corner_value[CollapseMesh::previous(face.corner)]));
-  const Vec2d q0 = uv(channel.value(own)), q = uv(merge.planned(channel_index, own));
+  const Vec2d q0 = uv(channel.value(own)), q = uv(planned);
   const double before = cross(q1 - q0, q2 - q0), after = cross(q1 - q, q2 - q);
   return before == 0 || (before > 0) == (after > 0);
 }
@@ -139,8 +139,11 @@ bool Legality::keeps_texture(const Far& face, std::size_t channel_index, const V
 bool Legality::texture(const ValueMerge& merge) const {
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
     if (!state_.channels[i].is_uv()) continue;
+    const float* const for_all = merge.planned_for_all(i);
     for (std::size_t k = 0; k < far_count_; ++k) {
-      if (!keeps_texture(far_[k], i, merge)) return false;
+      const std::uint32_t own = state_.channels[i].corner_value[far_[k].corner];
+      if (own == kInvalid) continue;
+      if (!keeps_texture(far_[k], i, for_all != nullptr ? for_all : merge.planned(i, own))) return false;
     }
   }
   return true;

@@ -52,7 +52,7 @@ class Legality {
   };
   void make_room(std::size_t corners);
   bool keeps_shape(const Far& face, Vec3d from, Vec3d to) const;
-  bool keeps_texture(const Far& face, std::size_t channel, const ValueMerge& merge) const;
+  bool keeps_texture(const Far& face, std::size_t channel, const float* planned) const;
 
   const CollapseState& state_;
   VertexNotes notes_;

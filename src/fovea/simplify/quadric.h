@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "fovea/base/math.h"
 
@@ -76,43 +78,45 @@ struct alignas(32) Quadric {
 /// small, so that what floats lose is far below the pull towards the original vertices
 /// (kRegularization in collapse_state.cpp); around a point far away they would lose everything.
 struct VertexQuadric {
-  float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-  float bx = 0, by = 0, bz = 0;
-  float c = 0;
-  float weight = 0;
+  /// In the order of Quadric's members.
+  std::array<float, 11> numbers{};
 
   VertexQuadric() = default;
   /// `q`, for a vertex at `at`.
-  VertexQuadric(const Quadric& q, Vec3d at) {
-    const Vec3d moved = times(q, at), b{q.bx + moved.x, q.by + moved.y, q.bz + moved.z};
-    assign(q, b, q.c + (q.bx + b.x) * at.x + (q.by + b.y) * at.y + (q.bz + b.z) * at.z);
+  VertexQuadric(Quadric q, Vec3d at) {
+    move(q, at);
+    set(q);
   }
+  float weight() const { return numbers[10]; }
   /// As a function of points, of a vertex at `at`.
   Quadric around_origin(Vec3d at) const {
-    Quadric q{xx, xy, xz, yy, yz, zz, 0, 0, 0, c, weight};
-    const Vec3d moved = times(q, at);
-    q.bx = bx - moved.x, q.by = by - moved.y, q.bz = bz - moved.z;
-    q.c -= (bx + q.bx) * at.x + (by + q.by) * at.y + (bz + q.bz) * at.z;
+    Quadric q = get();
+    move(q, -at);
     return q;
   }
   /// Adds w · q, a function of the way from the vertex as well; its weight is that of q, whatever w.
   void add_scaled(const Quadric& q, double w) {
-    Quadric sum{xx, xy, xz, yy, yz, zz, bx, by, bz, c, weight};
+    Quadric sum = get();
     sum.add_scaled(q, w);
-    assign(sum, {sum.bx, sum.by, sum.bz}, sum.c);
+    set(sum);
   }
 
  private:
-  static Vec3d times(const Quadric& q, Vec3d p) {
-    return {q.xx * p.x + q.xy * p.y + q.xz * p.z, q.xy * p.x + q.yy * p.y + q.yz * p.z,
-            q.xz * p.x + q.yz * p.y + q.zz * p.z};
+  Quadric get() const {
+    std::array<double, 11> q;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = static_cast<double>(numbers[i]);
+    return {q[0], q[1], q[2], q[3], q[4], q[5], q[6], q[7], q[8], q[9], q[10]};
   }
-  void assign(const Quadric& q, Vec3d b, double value) {
-    const auto f = [](double x) { return static_cast<float>(x); };
-    xx = f(q.xx), xy = f(q.xy), xz = f(q.xz), yy = f(q.yy), yz = f(q.yz), zz = f(q.zz);
-    bx = f(b.x), by = f(b.y), bz = f(b.z);
-    c = f(value);
-    weight = f(q.weight);
+  void set(const Quadric& q) {
+    const std::array<double, 11> all{q.xx, q.xy, q.xz, q.yy, q.yz, q.zz, q.bx, q.by, q.bz, q.c, q.weight};
+    for (std::size_t i = 0; i < all.size(); ++i) numbers[i] = static_cast<float>(all[i]);
+  }
+  /// p ↦ q(p + by)
+  static void move(Quadric& q, Vec3d by) {
+    const Vec3d b{q.bx + q.xx * by.x + q.xy * by.y + q.xz * by.z, q.by + q.xy * by.x + q.yy * by.y + q.yz * by.z,
+                  q.bz + q.xz * by.x + q.yz * by.y + q.zz * by.z};
+    q.c += (q.bx + b.x) * by.x + (q.by + b.y) * by.y + (q.bz + b.z) * by.z;
+    q.bx = b.x, q.by = b.y, q.bz = b.z;
   }
 };
 
