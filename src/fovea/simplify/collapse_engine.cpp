@@ -438,7 +438,7 @@ void Engine::fetch_leftovers(const Due& due) const {
     if (half_edge == kInvalid) continue;
     const std::uint32_t across = mesh_.vertex(CollapseMesh::previous(half_edge));
     prefetch(mesh_.ring(across).data());
-    if (!state_.channels.empty()) cost_.fetch_slot(across);
+    cost_.fetch_slot(across);
     prefetch(&state_.mesh_face[half_edge / 3]);
   }
 }

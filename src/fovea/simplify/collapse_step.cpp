@@ -65,7 +65,7 @@ void CollapseStepper::leave_edge(std::uint32_t e, std::uint32_t half_edge) {
 
 void CollapseStepper::drop_face(std::uint32_t f) {
   for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
-    if (has_values_ && cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
+    if (cost_.has_many(mesh_.vertex(c))) dropped_.push_back({c, mesh_.vertex(c)});
     leave_edge(mesh_.edge(c), c);
     mesh_.unlink_corner(c);
   }

@@ -31,8 +31,7 @@ class CollapseStepper {
         queue_(queue),
         views_(views),
         record_(record),
-        error_(error),
-        has_values_(!state.channels.empty()) {}
+        error_(error) {}
 
   /// Collapses edge e to p, as `merge` has planned it and `legality` looked at it. Returns the vertex that is
   /// left. O(one-rings).
@@ -62,7 +61,6 @@ class CollapseStepper {
   ViewMetric* const views_;
   CollapseRecord& record_;
   double error_;
-  const bool has_values_;
 
   /// A corner of a face that was dropped, at a vertex of several values.
   struct DroppedCorner {
