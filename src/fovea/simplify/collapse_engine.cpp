@@ -131,7 +131,7 @@ class Engine {
   std::mutex memory_mutex_;
   Legality legality_;
   ValueMerge merge_;
-  std::array<Due, kLine> line_;   // what was taken from the queue at each of the last ticks
+  std::array<Due, kLine> line_;  // what was taken from the queue at each of the last ticks
   std::size_t tick_ = 0, oldest_ = 1;
   std::array<std::uint32_t, kLine> merged_;  // the last vertices that were left by a collapse
   std::size_t merges_ = 0;

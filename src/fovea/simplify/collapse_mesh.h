@@ -133,6 +133,7 @@ struct CollapseMesh {
     faces[f].vertex[0] = kInvalid;
     --live_faces;
   }
+
  private:
   void link_rings();
   void link_edges();

@@ -112,14 +112,14 @@ class Builder {
   Channel& channel_for(const AttributeLayer& layer);
   void append_values(Channel& channel, std::size_t m, const std::vector<const AttributeLayer*>& layers,
                      const std::vector<std::uint32_t>& layer_indices);
+  void reserve_records();
   void make_columns();
   void make_locks();
   FaceShape shape_of(std::size_t f) const;
   void find_single_values(Channel& channel) const;
   void scale_channel(Channel& channel) const;
   void add_face_quadrics();
-  void add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
-                SlopeScratch& scratch);
+  void add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end, SlopeScratch& scratch);
   template <int Width>
   void add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
                   SlopeScratch& scratch, CornerQuadrics& corners);
@@ -256,13 +256,33 @@ void Builder::make_channels() {
     state_.channels.push_back(std::move(channel));
   }
   for (Channel& channel : state_.channels) {
+    if (channel.kind == ChannelKind::fitted) channel.quadric_size = attribute_stride(channel.fit_width);
+    channel.stride = channel.quadric_size + static_cast<std::size_t>(channel.width);
     channel.slices.resize(meshes_.size());
     channel.scale.assign(meshes_.size(), 1.0);
   }
   make_columns();
+  reserve_records();
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     add_layer_channels(m);
     add_morph_channel(m);
+  }
+}
+
+/// Room for the values of all meshes at once: what grows leaves holes in memory.
+void Builder::reserve_records() {
+  for (Channel& channel : state_.channels) {
+    std::size_t count = 0;
+    for (const TriMesh* mesh : meshes_) {
+      if (channel.is_position_morph) count += mesh->vertex_count();
+      for (const AttributeLayer& layer : mesh->layers) {
+        if (&channel_for(layer) != &channel) continue;
+        count += layer.size();
+        if (channel.kind == ChannelKind::skin) break;  // its layers share one map
+      }
+    }
+    channel.records.reserve(count * channel.stride);
+    channel.layer_value.reserve(count);
   }
 }
 
@@ -303,7 +323,7 @@ void Builder::append_values(Channel& channel, std::size_t m, const std::vector<c
   }
   const std::size_t first = channel.layer_value.size();
   number_values(channel, m, *layers.front());
-  channel.values.resize(channel.layer_value.size() * static_cast<std::size_t>(channel.width), 0.0f);
+  channel.records.resize(channel.layer_value.size() * channel.stride, 0.0f);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const AttributeLayer& layer = *layers[i];
     const auto width = static_cast<std::size_t>(layer.width);
@@ -323,7 +343,6 @@ void Builder::append_values(Channel& channel, std::size_t m, const std::vector<c
 void Builder::number_values(Channel& channel, std::size_t m, const AttributeLayer& layer) {
   std::vector<std::uint32_t> number(layer.size(), kInvalid);
   const std::size_t first_face = state_.slots[m].first_face;
-  channel.layer_value.reserve(channel.layer_value.size() + layer.size());
   for (std::size_t f = first_face; f < first_face + face_count(m); ++f) {
     for (int k = 0; k < 3; ++k) {
       const ValueId id = layer.corner_value[corner(state_.mesh_face[f], k).index()];
@@ -346,7 +365,7 @@ void Builder::add_morph_channel(std::size_t m) {
   const MeshSlot& slot = state_.slots[m];
   const std::size_t first = channel.layer_value.size();
   channel.slices[m].push_back({kInvalid, 0, 3 * static_cast<int>(mesh.target_count()), Semantic::custom});
-  channel.values.resize((first + mesh.vertex_count()) * static_cast<std::size_t>(channel.width), 0.0f);
+  channel.records.resize((first + mesh.vertex_count()) * channel.stride, 0.0f);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     const VertexId id = state_.mesh_vertex[slot.first_vertex + v];
     channel.layer_value.push_back(ValueId{id.index()});
@@ -435,11 +454,6 @@ void Builder::scale_channel(Channel& channel) const {
 /// faces for a range of vertices of its own, so that sums come out the same for any number of threads.
 void Builder::add_face_quadrics() {
   CollapseMesh& mesh = state_.mesh;
-  for (Channel& channel : state_.channels) {
-    if (channel.kind != ChannelKind::fitted) continue;
-    const std::size_t count = channel.values.size() / static_cast<std::size_t>(channel.width);
-    channel.quadric.assign(count * attribute_stride(channel.fit_width), 0.0f);
-  }
   constexpr int kMostRanges = 8;
   const auto ranges = static_cast<std::size_t>(std::min(context_.thread_count(), kMostRanges));
   parallel_for(context_, mesh.vertices.size(), mesh.vertices.size() / ranges + 1,
@@ -455,7 +469,8 @@ void Builder::add_face_quadrics() {
                  }
                  for (std::size_t v = begin; v < end; ++v) {
                    Quadric pull;
-                   pull.add_point({}, kRegularization * static_cast<double>(mesh.vertices[v].quadric.weight()));
+                   pull.add_point({},
+                                  kRegularization * static_cast<double>(mesh.vertices[v].quadric.weight()));
                    mesh.vertices[v].quadric.add_scaled(pull, weight_of(static_cast<std::uint32_t>(v)));
                  }
                });

@@ -304,7 +304,7 @@ void EdgeCost::fetch_seams(std::uint32_t e) const {
 void EdgeCost::fetch_value(const Channel& channel, std::uint32_t value) const {
   const float* const quadric = channel.value_quadric(value);
   prefetch(quadric);
-  prefetch(quadric + attribute_stride(channel.fit_width) - 1);
+  prefetch(quadric + channel.stride - 1);
 }
 
 Candidate EdgeCost::best_place(std::uint32_t e, const Quadric& q) const {

@@ -33,7 +33,8 @@ class Legality {
   std::span<const std::uint32_t> shared_faces(std::uint32_t v) const {
     return {(v == a_ ? shared_at_a_ : shared_at_b_).data(), shared_count_};
   }
-  /// Whether a and b have no neighbour in common but those across their triangles, each of which is across one.
+  /// Whether a and b have no neighbour in common but those across their triangles, each of which is across
+  /// one.
   bool is_plain() const { return is_plain_; }
   /// Whether the edge leaves triangles on each other.
   bool may_coincide() const { return topology_ == Block::topology; }

@@ -74,9 +74,9 @@ struct alignas(32) Quadric {
   }
 };
 
-/// A Quadric as a function of the way from its vertex, in single precision. Near the surface all its terms are
-/// small, so that what floats lose is far below the pull towards the original vertices
-/// (kRegularization in collapse_state.cpp); around a point far away they would lose everything.
+/// A Quadric as a function of the way from its vertex, in single precision. Near the surface all its terms
+/// are small, so that what floats lose is far below the pull towards the original vertices (kRegularization
+/// in collapse_state.cpp); around a point far away they would lose everything.
 struct VertexQuadric {
   /// In the order of Quadric's members.
   std::array<float, 11> numbers{};
@@ -113,7 +113,8 @@ struct VertexQuadric {
   }
   /// p ↦ q(p + by)
   static void move(Quadric& q, Vec3d by) {
-    const Vec3d b{q.bx + q.xx * by.x + q.xy * by.y + q.xz * by.z, q.by + q.xy * by.x + q.yy * by.y + q.yz * by.z,
+    const Vec3d b{q.bx + q.xx * by.x + q.xy * by.y + q.xz * by.z,
+                  q.by + q.xy * by.x + q.yy * by.y + q.yz * by.z,
                   q.bz + q.xz * by.x + q.yz * by.y + q.zz * by.z};
     q.c += (q.bx + b.x) * by.x + (q.by + b.y) * by.y + (q.bz + b.z) * by.z;
     q.bx = b.x, q.by = b.y, q.bz = b.z;

@@ -161,7 +161,7 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
     for (std::uint32_t root = 0; root < plan.classes.size(); ++root) {
       if (plan.classes[root].root != root) continue;
       const std::uint32_t kept = plan.classes[root].kept;
-      if (!channel.quadric.empty()) {
+      if (channel.kind == ChannelKind::fitted) {
         float* to = channel.value_quadric(kept);
         plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
           if (entry.value == kept) return;

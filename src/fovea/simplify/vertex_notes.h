@@ -24,7 +24,8 @@ class VertexNotes {
   std::uint32_t place(std::uint32_t vertex) {
     const auto mask = static_cast<std::uint32_t>(notes_.size()) - 1;
     std::uint32_t at = (vertex * 0x9E3779B1u) >> shift_;
-    // Nothing foretells whether a vertex is known; so the loop ends for either reason, and most often at once.
+    // Nothing foretells whether a vertex is known; so the loop ends for either reason, and most often at
+    // once.
     while ((notes_[at].vertex != vertex) & (notes_[at].vertex != kInvalid)) at = (at + 1) & mask;
     notes_[at].vertex = vertex;
     return at;
