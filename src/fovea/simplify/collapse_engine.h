@@ -31,9 +31,9 @@ struct CollapseOutcome {
 ///       merge quadrics, fit attribute values, rewire, record
 ///
 /// A merge adds to the cost of the edges around (but for the rare seam that ends there), so what they are
-/// queued for stays a lower bound and is corrected when they come up. Several dozen are under way at once, each
-/// in another stage, because memory is slow: what a stage reads is asked for a few edges earlier. They cost
-/// about the same, and one is priced again if something around it has changed meanwhile.
+/// queued for stays a lower bound and is corrected when they come up. Several dozen are under way at once,
+/// each in another stage, because memory is slow: what a stage reads is asked for a few edges earlier. They
+/// cost about the same, and one is priced again if something around it has changed meanwhile.
 ///
 /// A collapse that breaks the surface's topology is put off by a constant factor rather than refused, unless
 /// `keep_topology`: a model of many handles and parts still reaches its target, late. So is one that leaves
