@@ -105,11 +105,5 @@ TEST(CollapseMesh, FindsComponents) {
   EXPECT_EQ(find_components(make(test::empty_mesh())).count(), 0u);
 }
 
-TEST(CollapseMesh, MarksNeverRepeat) {
-  CollapseMesh mesh = make(test::tetrahedron());
-  const std::uint32_t first = mesh.new_mark(), second = mesh.new_mark();
-  EXPECT_GE(second, first + 4);
-}
-
 }  // namespace
 }  // namespace fovea

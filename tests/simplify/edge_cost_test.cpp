@@ -15,7 +15,7 @@ namespace {
 /// The error of the merged vertex, class by class as the values will really be merged.
 Quadric quadric_by_classes(const CollapseState& state, std::uint32_t e) {
   const auto [a, b] = state.mesh.edges[e].ends;
-  Quadric q = state.mesh.quadrics[a] + state.mesh.quadrics[b];
+  Quadric q = state.mesh.quadric(a) + state.mesh.quadric(b);
   ValueClasses classes;
   for (const Channel& channel : state.channels) {
     if (channel.kind != ChannelKind::fitted) continue;

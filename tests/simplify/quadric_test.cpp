@@ -108,6 +108,37 @@ TEST(TriangleGradient, TakesTheCornerValues) {
   }
 }
 
+TEST(VertexQuadric, IsTheQuadricToSinglePrecision) {
+  Random random(21);
+  for (int i = 0; i < 20; ++i) {
+    // Of planes near the vertex, as they are at a vertex of a mesh.
+    const Vec3d at{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    Quadric exact;
+    for (int k = 0; k < 6; ++k) {
+      const Vec3d n = normalized(Vec3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+      exact.add_linear(n, -dot(n, at) + random.uniform(-0.01, 0.01), random.uniform(0, 1));
+    }
+    exact.weight = 3;
+    const Quadric back = VertexQuadric(exact, at).around_origin(at);
+    EXPECT_FLOAT_EQ(static_cast<float>(back.weight), 3.0f);
+    const Vec3d p = at + Vec3d{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), 0.01};
+    EXPECT_NEAR(back.value(p), exact.value(p), 1e-9);  // 10⁻⁷ of weights times squared distances
+  }
+}
+
+TEST(VertexQuadric, AddsWhatIsAFunctionOfTheWayFromItsVertex) {
+  const Vec3d at{0.5, -0.25, 2};
+  Quadric plane;
+  plane.weight = 2;
+  plane.add_linear({0, 0, 1}, 0, 2);
+  VertexQuadric sum;
+  sum.add_scaled(plane, 3);
+  const Quadric q = sum.around_origin(at);
+  EXPECT_NEAR(q.value(at), 0, 1e-12);
+  EXPECT_NEAR(q.value(at + Vec3d{7, 8, 0.5}), 3 * 2 * 0.25, 1e-12);
+  EXPECT_EQ(q.weight, 2);
+}
+
 TEST(AttributeQuadric, ReducedIsTheLeastErrorOverTheValue) {
   Random random(4);
   for (int trial = 0; trial < 5; ++trial) {

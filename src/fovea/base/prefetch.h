@@ -7,6 +7,8 @@ namespace fovea {
 inline void prefetch([[maybe_unused]] const void* p) {
 #if defined(__GNUC__) || defined(__clang__)
   __builtin_prefetch(p);
+  asm volatile(
+      "");  // else GCC 12 takes functions that do nothing but prefetch for pure, and leaves out their calls
 #endif
 }
 

@@ -35,8 +35,10 @@ constexpr double kTolerance = 1.1;
 constexpr std::size_t kTogether = 4;
 /// So many are searched for them, in the order of the queue.
 constexpr std::size_t kAhead = 64;
-/// Items that are taken from the queue together, so that their memory is fetched together.
-constexpr std::size_t kBatch = 16;
+/// So many items are taken from the queue between two stages of one, while its memory is fetched.
+constexpr std::size_t kSpacing = 4;
+/// Room for all items between the queue and their collapse.
+constexpr std::size_t kLine = 64;
 /// Views are asked until an edge costs so many times what it was queued for, and what was last taken.
 constexpr double kEnough = 1.3;
 
@@ -44,9 +46,10 @@ constexpr double kEnough = 1.3;
 struct Due {
   std::uint32_t item = kInvalid;
   double cost = 0;  ///< What it was queued for.
-  // Of an edge, as it is now:
-  Quadric quadric;
-  Candidate place;
+  // Of an edge, when it was priced last:
+  Quadric quadric = {};
+  Candidate place = {};
+  std::size_t merges = 0;  ///< How many there had been.
 };
 
 class Engine {
@@ -85,15 +88,22 @@ class Engine {
   void price_edges();
   void reserve_record();
   StopReason loop();
-  void take_batch();
-  void drop_dearer();
-  void fetch_surroundings() const;
+  bool advance();
+  void take_next(Due& due);
+  bool is_edge(const Due& due) const { return due.item < edge_count_; }
+  void fetch_rings(const Due& due) const;
+  void fetch_faces(const Due& due) const;
+  void fetch_neighbors(const Due& due) const;
+  void fetch_leftovers(const Due& due) const;
   void price(Due& due);
+  void price_in_line(Due& due);
+  void take(Due& due);
+  bool has_changed(const Due& due, std::uint32_t v) const;
   void price_by_views(std::uint32_t e, const Quadric& q, double limit, ViewMetric::Memory& memory);
   void price_by_views(std::span<const Due> edges);
   ViewMetric::Memory take_memory();
   void give_back(ViewMetric::Memory&& memory);
-  void take_by_views();
+  bool take_by_views();
   void try_edge(Due& due);
   bool is_dearer(const Due& due, double price);
   bool is_legal(std::uint32_t e, Vec3d p);
@@ -121,8 +131,10 @@ class Engine {
   std::mutex memory_mutex_;
   Legality legality_;
   ValueMerge merge_;
-  std::vector<Due> batch_;
-  std::vector<std::uint32_t> changed_;  // vertices merged since the batch was priced
+  std::array<Due, kLine> line_;  // what was taken from the queue at each of the last ticks
+  std::size_t tick_ = 0, oldest_ = 1;
+  std::array<std::uint32_t, kLine> merged_;  // the last vertices that were left by a collapse
+  std::size_t merges_ = 0;
   CollapseOutcome& outcome_;
   CollapseStepper stepper_;
   double level_ = 0;  // with views: what the last item cost that was taken from the queue
@@ -251,68 +263,85 @@ void Engine::reserve_record() {
 StopReason Engine::loop() {
   const std::uint64_t start = mesh_.live_faces;
   std::uint64_t turns = 0;
-  const std::uint64_t some = views_ == nullptr ? 1 << 10 : 1 << 4;  // a few milliseconds
+  const std::uint64_t some = views_ == nullptr ? 1 << 14 : 1 << 4;  // a few milliseconds
   while (mesh_.live_faces > target_) {
     if (++turns % some == 0) {
       const double done =
           static_cast<double>(start - mesh_.live_faces) / static_cast<double>(start - target_);
       if (!context_.advance("collapse", done)) return StopReason::cancelled;
     }
-    take_batch();
-    if (batch_.empty()) return over_error_ ? StopReason::error : StopReason::stuck;
-    drop_dearer();
-    fetch_surroundings();
-    changed_.clear();
-    for (Due& due : batch_) {
-      if (mesh_.live_faces <= target_) break;
-      if (due.item >= edge_count_) {
-        try_vanish(due);
-      } else if (mesh_.edge_alive(due.item) && !queue_.contains(due.item)) {
-        try_edge(due);
-      }
-    }
+    if (!(views_ == nullptr ? advance() : take_by_views()))
+      return over_error_ ? StopReason::error : StopReason::stuck;
   }
   return StopReason::target;
 }
 
-/// Takes the next items out of the queue: those that cost about as much as the first.
-void Engine::take_batch() {
-  batch_.clear();
-  if (views_ != nullptr) {
-    take_by_views();
+/// Takes the next item from the queue, and those before it each one stage further. Every stage asks for the
+/// memory that the next one reads, which arrives while others have their turn. Returns false when nothing is
+/// left.
+bool Engine::advance() {
+  ++tick_;
+  take_next(line_[tick_ % kLine]);
+  std::size_t stage = 0;
+  const auto next = [&](auto&& f) {
+    ++stage;
+    if (tick_ <= stage * kSpacing) return;
+    Due& due = line_[(tick_ - stage * kSpacing) % kLine];
+    if (due.item != kInvalid) f(due);
+  };
+  const auto next_of_edge = [&](auto&& f) {
+    next([&](Due& due) {
+      if (is_edge(due)) f(due);
+    });
+  };
+  next_of_edge([&](const Due& due) { cost_.fetch_ends(due.item); });
+  if (!state_.channels.empty()) {
+    next_of_edge([&](const Due& due) { cost_.fetch_values(due.item); });
+    next_of_edge([&](const Due& due) { cost_.fetch_seams(due.item); });
+  }
+  next_of_edge([&](Due& due) { price_in_line(due); });
+  next_of_edge([&](const Due& due) { fetch_faces(due); });
+  next_of_edge([&](const Due& due) { fetch_neighbors(due); });
+  next_of_edge([&](const Due& due) { fetch_leftovers(due); });
+  next([&](Due& due) { take(due); });
+  static_assert(8 * kSpacing < kLine);
+  return oldest_ <= tick_;
+}
+
+/// The next item if it costs about as much as the oldest in line.
+void Engine::take_next(Due& due) {
+  due.item = kInvalid;
+  while (oldest_ < tick_ && line_[oldest_ % kLine].item == kInvalid) ++oldest_;
+  const std::uint32_t item = queue_.first();
+  if (item == kInvalid) {
+    if (oldest_ == tick_) ++oldest_;
     return;
   }
-  while (batch_.size() < kBatch) {
-    const std::uint32_t item = queue_.first();
-    if (item == kInvalid) break;
-    const double cost = queue_.cost_floor(item);
-    if (!batch_.empty() && cost > batch_.front().cost * kTolerance) break;
-    queue_.remove(item);
-    batch_.push_back({item, cost, {}, {}});
-    if (item < edge_count_) prefetch(&mesh_.edges[item]);
-  }
-  for (const Due& due : batch_) {
-    if (due.item < edge_count_) cost_.fetch_ends(due.item);
-  }
-  for (const Due& due : batch_) {
-    if (due.item < edge_count_) cost_.fetch_values(due.item);
-  }
-  for (const Due& due : batch_) {
-    if (due.item < edge_count_) cost_.fetch_seams(due.item);
-  }
+  const double cost = queue_.cost_floor(item);
+  if (oldest_ < tick_ && cost > line_[oldest_ % kLine].cost * kTolerance) return;
+  queue_.remove(item);
+  due.item = item;
+  due.cost = cost;
+  if (is_edge(due)) prefetch(&mesh_.edges[item]);
 }
 
 /// Takes the cheapest item that has the price it was queued for. Edges are priced when they come up for the
-/// first time, and anew when something has changed around them; the next few with them, in parallel.
-void Engine::take_by_views() {
+/// first time, and anew when something has changed around them; the next few with them, in parallel. Returns
+/// false when nothing is left.
+bool Engine::take_by_views() {
   for (;;) {
     const std::uint32_t item = queue_.first();
-    if (item == kInvalid) return;
+    if (item == kInvalid) return false;
     if (item >= edge_count_ || views_->is_fresh(item)) {
-      batch_.push_back({item, queue_.cost_floor(item), {}, {}});
-      level_ = batch_.back().cost;
+      Due due{.item = item, .cost = queue_.cost_floor(item)};
+      level_ = due.cost;
       queue_.remove(item);
-      return;
+      if (is_edge(due)) {
+        price(due);
+        if (is_dearer(due, due.place.cost)) return true;
+      }
+      take(due);
+      return true;
     }
     // What is priced for the first time will be needed; new prices can go out of date before they are.
     const std::size_t most = views_->is_noted(item) ? kTogether : kAhead;
@@ -324,7 +353,7 @@ void Engine::take_by_views() {
       if (next >= edge_count_ || views_->is_fresh(next)) {
         others.emplace_back(next, queue_.cost_floor(next));
       } else {
-        stale.push_back({next, queue_.cost_floor(next), {}, {}});
+        stale.push_back({.item = next, .cost = queue_.cost_floor(next)});
       }
       queue_.remove(next);
     }
@@ -334,6 +363,7 @@ void Engine::take_by_views() {
 }
 
 void Engine::price(Due& due) {
+  due.merges = merges_;
   due.quadric = cost_.quadric(due.item);
   if (views_ == nullptr) {
     due.place = cost_.best_place(due.item, due.quadric);
@@ -344,38 +374,43 @@ void Engine::price(Due& due) {
   due.place = views_->noted(due.item);
 }
 
-/// Puts back the edges of the batch that cost more by now than they were queued for.
-void Engine::drop_dearer() {
-  std::erase_if(batch_, [&](Due& due) {
-    if (due.item >= edge_count_) return false;
-    const auto [a, b] = mesh_.edges[due.item].ends;
-    price(due);
-    const bool dearer = is_dearer(due, due.place.cost);
-    if (!dearer) {
-      prefetch(mesh_.ring(a).data());
-      prefetch(mesh_.ring(b).data());
-    }
-    return dearer;
-  });
+/// Prices an edge; puts it back if it costs more by now than it was queued for.
+void Engine::price_in_line(Due& due) {
+  if (!mesh_.edge_alive(due.item) || queue_.contains(due.item)) {
+    due.item = kInvalid;
+    return;
+  }
+  price(due);
+  if (is_dearer(due, due.place.cost)) {
+    due.item = kInvalid;
+  } else {
+    fetch_rings(due);
+  }
 }
 
-/// Fetches the triangles around the edges of the batch, then their vertices, all at once.
-void Engine::fetch_surroundings() const {
-  const auto for_corners = [&](auto&& f) {
-    for (const Due& due : batch_) {
-      if (due.item >= edge_count_) continue;
-      for (const std::uint32_t v : mesh_.edges[due.item].ends) {
-        const auto ring = mesh_.ring(v);
-        for (const std::uint32_t c : ring.first(std::min<std::size_t>(ring.size(), 12))) f(c);
-      }
-    }
-  };
-  for_corners([&](std::uint32_t c) {
+void Engine::fetch_rings(const Due& due) const {
+  for (const std::uint32_t v : mesh_.edges[due.item].ends) prefetch(mesh_.ring(v).data());
+}
+
+/// Calls f(corner) for the corners at the ends of edge e, or some if they are many.
+template <class F>
+void for_corners(const CollapseMesh& mesh, std::uint32_t e, F&& f) {
+  for (const std::uint32_t v : mesh.edges[e].ends) {
+    const auto ring = mesh.ring(v);
+    for (const std::uint32_t c : ring.first(std::min<std::size_t>(ring.size(), 12))) f(c);
+  }
+}
+
+void Engine::fetch_faces(const Due& due) const {
+  for_corners(mesh_, due.item, [&](std::uint32_t c) {
     prefetch(&mesh_.faces[c / 3]);
     if (!state_.channels.empty()) prefetch(&state_.channels.front().corner_value[c]);
   });
-  // The vertices, edges and values next to each corner: around a vertex that is all of them, once.
-  for_corners([&](std::uint32_t c) {
+}
+
+/// The vertices, edges and values next to each corner: around a vertex that is all of them, once.
+void Engine::fetch_neighbors(const Due& due) const {
+  for_corners(mesh_, due.item, [&](std::uint32_t c) {
     const CornerView at_c = mesh_.view(c);
     prefetch(&mesh_.vertices[at_c.next]);
     prefetch(&mesh_.edges[at_c.to_next]);
@@ -385,22 +420,51 @@ void Engine::fetch_surroundings() const {
       if (value != kInvalid) prefetch(channel.value(value));
     }
   });
-  // What the triangles on the edges leave when they go.
-  for (const Due& due : batch_) {
-    if (due.item >= edge_count_ || !mesh_.edges[due.item].is_listed()) continue;
-    for (const std::uint32_t half_edge : mesh_.edges[due.item].half_edges) {
-      if (half_edge == kInvalid) continue;
-      prefetch(mesh_.ring(mesh_.vertex(CollapseMesh::previous(half_edge))).data());
-      prefetch(&state_.mesh_face[half_edge / 3]);
+}
+
+/// What its vertices and the triangles on the edge leave when they go.
+void Engine::fetch_leftovers(const Due& due) const {
+  for (const std::uint32_t v : mesh_.edges[due.item].ends) {
+    prefetch(&state_.mesh_vertex[v]);
+    for (const Channel& channel : state_.channels) {
+      const std::uint32_t value = channel.single[v];
+      if (value >= Channel::kMany) continue;
+      prefetch(channel.value(value));
+      prefetch(&channel.layer_value[value]);
     }
   }
+  if (!mesh_.edges[due.item].is_listed()) return;
+  for (const std::uint32_t half_edge : mesh_.edges[due.item].half_edges) {
+    if (half_edge == kInvalid) continue;
+    const std::uint32_t across = mesh_.vertex(CollapseMesh::previous(half_edge));
+    prefetch(mesh_.ring(across).data());
+    cost_.fetch_slot(across);
+    prefetch(&state_.mesh_face[half_edge / 3]);
+  }
+}
+
+/// Carries out what is due, if it is still there and that is legal.
+void Engine::take(Due& due) {
+  if (!is_edge(due)) {
+    try_vanish(due);
+  } else if (mesh_.edge_alive(due.item) && !queue_.contains(due.item)) {
+    try_edge(due);
+  }
+  due.item = kInvalid;
+}
+
+/// Whether v was left by a collapse since the edge was priced.
+bool Engine::has_changed(const Due& due, std::uint32_t v) const {
+  for (std::size_t i = due.merges; i < merges_; ++i) {
+    if (merged_[i % kLine] == v) return true;
+  }
+  return false;
 }
 
 /// Collapses the edge if that is legal at about the cost that it was queued for; else puts it back.
 void Engine::try_edge(Due& due) {
   const auto [a, b] = mesh_.edges[due.item].ends;
-  if (std::find(changed_.begin(), changed_.end(), a) != changed_.end() ||
-      std::find(changed_.begin(), changed_.end(), b) != changed_.end()) {
+  if (has_changed(due, a) || has_changed(due, b)) {
     price(due);
     if (is_dearer(due, due.place.cost)) return;
   }
@@ -451,7 +515,7 @@ void Engine::take_or_requeue(const Due& due, const Candidate& where) {
   }
   const std::uint32_t b = stepper_.collapse(due.item, where.position, error);
   revive_edges(b);
-  changed_.push_back(b);
+  merged_[merges_++ % kLine] = b;
 }
 
 void Engine::put_off(const Due& due) {
@@ -486,7 +550,7 @@ void Engine::revive_edges(std::uint32_t b) {
     if (tries_[e] == 0) return;
     tries_[e] = 0;
     if (views_ != nullptr) {
-      const Due due{e, 0, {}, {}};
+      const Due due{.item = e};
       price_by_views({&due, 1});
       return;
     }

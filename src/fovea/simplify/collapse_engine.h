@@ -23,17 +23,17 @@ struct CollapseOutcome {
 ///
 ///     queue every edge by its cost, every component by the cost of losing it
 ///     while there are too many triangles
-///       take the cheapest few
-///       put back those that cost more by now than they were queued for
-///       for each of the others
-///         if it is a component: drop its triangles
-///         find the cheapest legal position for the merged vertex
-///         none, or dearer than thought: put it back at that price
-///         merge quadrics, fit attribute values, rewire, record
+///       take the cheapest
+///       put it back if it costs more by now than it was queued for
+///       if it is a component: drop its triangles
+///       find the cheapest legal position for the merged vertex
+///       none, or dearer than thought: put it back at that price
+///       merge quadrics, fit attribute values, rewire, record
 ///
 /// A merge adds to the cost of the edges around (but for the rare seam that ends there), so what they are
-/// queued for stays a lower bound and is corrected when they come up. A few at a time, because most of the
-/// time goes into waiting for memory, and that of several edges can be waited for together.
+/// queued for stays a lower bound and is corrected when they come up. Several dozen are under way at once,
+/// each in another stage, because memory is slow: what a stage reads is asked for a few edges earlier. They
+/// cost about the same, and one is priced again if something around it has changed meanwhile.
 ///
 /// A collapse that breaks the surface's topology is put off by a constant factor rather than refused, unless
 /// `keep_topology`: a model of many handles and parts still reaches its target, late. So is one that leaves

@@ -12,35 +12,33 @@ namespace fovea {
 void CollapseMesh::link() {
   live_faces = faces.size();
   link_rings();
-  // Edges: each is numbered at its smaller end.
+  link_edges();
+}
+
+/// Each edge is numbered at its smaller end.
+void CollapseMesh::link_edges() {
+  struct Last {
+    std::uint32_t from = kInvalid, edge = kInvalid;
+  };
+  std::vector<Last> last_edge(vertices.size());  // that came to a vertex
   edges.clear();
-  edges.reserve(faces.size() * 3 / 2 + 3);
+  edges.reserve(vertices.size() + faces.size() + 64);  // by Euler's formula there are hardly more
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
-    const std::uint32_t mark = new_mark();
     const auto number = [&](std::uint32_t half_edge, std::uint32_t other) {
       if (other < v) return;
-      CollapseVertex& w = vertices[other];
-      if (w.mark != mark) {
-        w.mark = mark;
-        w.mark_count = static_cast<std::uint32_t>(edges.size());
+      Last& last = last_edge[other];
+      if (last.from != v) {
+        last = {v, static_cast<std::uint32_t>(edges.size())};
         edges.push_back({{v, other}});
       }
-      edge(half_edge) = w.mark_count;
-      edges[w.mark_count].add(half_edge);
+      edge(half_edge) = last.edge;
+      edges[last.edge].add(half_edge);
     };
     for_ring(v, [&](std::uint32_t c) {
       number(c, vertex(next(c)));
       number(previous(c), vertex(previous(c)));
     });
   }
-}
-
-std::uint32_t CollapseMesh::new_mark() {
-  if (last_mark_ > kInvalid - 8) {
-    for (CollapseVertex& v : vertices) v.mark = 0;
-    last_mark_ = 0;
-  }
-  return last_mark_ += 4;
 }
 
 void CollapseMesh::link_rings() {

@@ -17,16 +17,14 @@ struct CollapseFace {
   std::array<std::uint32_t, 3> edge;    ///< Edge from this corner's vertex to the next corner's.
 };
 
-/// A vertex of the engine, without its quadric: no more than a look at the neighbourhood needs, half a cache
-/// line.
-struct alignas(32) CollapseVertex {
+/// A vertex of the engine: all that the price of an edge needs of its end, one cache line.
+struct alignas(64) CollapseVertex {
   Vec3f position;                    ///< In units of the scene's diagonal, around the mesh's centre.
   std::uint32_t ring_begin = 0;      ///< Where its ring begins in CollapseMesh::corners.
   std::uint32_t ring_size : 30 = 0;  ///< Corners in its ring; 0 without triangles.
   std::uint32_t locked : 1 = 0;      ///< Must stay where it is.
   std::uint32_t refused : 1 = 0;     ///< An edge at it was refused since something changed around it.
-  std::uint32_t mark = 0;            ///< Scratch of whoever looks around; see CollapseMesh::new_mark.
-  std::uint32_t mark_count = 0;      ///< Scratch that holds while `mark` does.
+  VertexQuadric quadric;
 };
 
 /// An edge of the engine, with the half-edges of its triangles (a half-edge is the corner that it starts
@@ -85,7 +83,6 @@ struct EdgeCorners {
 struct CollapseMesh {
   std::vector<CollapseFace> faces;       ///< [#F]
   std::vector<CollapseVertex> vertices;  ///< [#V]
-  std::vector<Quadric> quadrics;         ///< [#V]
   std::vector<CollapseEdge> edges;       ///< [#E]
   std::vector<std::uint32_t> corners;    ///< The rings, with gaps.
   std::size_t live_faces = 0;
@@ -93,18 +90,24 @@ struct CollapseMesh {
   /// Builds rings and edges from `vertex` of all faces, which are distinct. O(#F).
   void link();
 
-  // Calculated rather than chosen: compilers make branches of choices, and nothing foretells these.
-  static std::uint32_t next(std::uint32_t c) { return c + 1 - 3 * (c % 3 == 2); }
-  static std::uint32_t previous(std::uint32_t c) { return c - 1 + 3 * (c % 3 == 0); }
+  // Calculated rather than chosen: compilers make branches of choices, and nothing foretells these. The two
+  // constants are lists of two-bit numbers, for the corners 0, 1 and 2: 1 2 0 and 2 0 1.
+  static std::uint32_t after(std::uint32_t k) { return 0b00'10'01 >> 2 * k & 3; }
+  static std::uint32_t before(std::uint32_t k) { return 0b01'00'10 >> 2 * k & 3; }
+  static std::uint32_t next(std::uint32_t c) { return c - c % 3 + after(c % 3); }
+  static std::uint32_t previous(std::uint32_t c) { return c - c % 3 + before(c % 3); }
   std::uint32_t vertex(std::uint32_t c) const { return faces[c / 3].vertex[c % 3]; }
   std::uint32_t edge(std::uint32_t c) const { return faces[c / 3].edge[c % 3]; }
   std::uint32_t& edge(std::uint32_t c) { return faces[c / 3].edge[c % 3]; }
   CornerView view(std::uint32_t c) const {
     const CollapseFace& face = faces[c / 3];
-    const std::uint32_t k = c % 3, n = next(k), p = previous(k);
+    const std::uint32_t k = c % 3, n = after(k), p = before(k);
     return {face.vertex[n], face.vertex[p], face.edge[k], face.edge[p]};
   }
   Vec3d position(std::uint32_t v) const { return Vec3d(vertices[v].position); }
+  /// The error over the position of a vertex; what attributes can make up for is not taken off.
+  Quadric quadric(std::uint32_t v) const { return vertices[v].quadric.around_origin(position(v)); }
+  void set_quadric(std::uint32_t v, const Quadric& q) { vertices[v].quadric = {q, position(v)}; }
   bool face_alive(std::uint32_t f) const { return faces[f].vertex[0] != kInvalid; }
   bool edge_alive(std::uint32_t e) const { return edges[e].face_count() > 0; }
 
@@ -130,16 +133,14 @@ struct CollapseMesh {
     faces[f].vertex[0] = kInvalid;
     --live_faces;
   }
-  /// A number that no vertex's `mark` has; the three after it are free as well.
-  std::uint32_t new_mark();
 
  private:
   void link_rings();
+  void link_edges();
   /// Room for rings comes in powers of two: a ring has room for at least bit_ceil(its size).
   std::uint32_t take_room(std::uint32_t size);
   void give_room(std::uint32_t begin, std::uint32_t size);
 
-  std::uint32_t last_mark_ = 0;
   std::vector<std::uint32_t> free_room_;  // [log2 of room], first of a list linked through `corners`
 };
 

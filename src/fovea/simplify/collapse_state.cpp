@@ -46,6 +46,38 @@ struct FaceFrame {
   TriangleGradient gradient;
 };
 
+/// Room for the slopes of attributes of any width.
+struct SlopeScratch {
+  std::vector<double> slopes;
+  std::vector<float> rounded;
+};
+
+/// What a face adds to its corners, to each as a function of the way from there: the squares are the same for
+/// all.
+struct CornerQuadrics {
+  Quadric squares;
+  struct Rest {
+    Vec3d b;
+    double c = 0;
+  };
+  std::array<Rest, 3> rest;
+
+  /// Adds w · (g·way + d)² with the corners' own d.
+  void add_linear(Vec3d g, std::array<double, 3> d, double w) {
+    squares.add_linear(g, 0, w);
+    for (std::size_t k = 0; k < 3; ++k) {
+      rest[k].b += w * d[k] * g;
+      rest[k].c += w * d[k] * d[k];
+    }
+  }
+  Quadric at(std::size_t k) const {
+    Quadric q = squares;
+    q.bx = rest[k].b.x, q.by = rest[k].b.y, q.bz = rest[k].b.z;
+    q.c = rest[k].c;
+    return q;
+  }
+};
+
 class Builder {
  public:
   Builder(std::span<const TriMesh* const> meshes, std::span<const double> scales,
@@ -80,17 +112,17 @@ class Builder {
   Channel& channel_for(const AttributeLayer& layer);
   void append_values(Channel& channel, std::size_t m, const std::vector<const AttributeLayer*>& layers,
                      const std::vector<std::uint32_t>& layer_indices);
+  void reserve_records();
   void make_columns();
   void make_locks();
   FaceShape shape_of(std::size_t f) const;
   void find_single_values(Channel& channel) const;
   void scale_channel(Channel& channel) const;
   void add_face_quadrics();
-  void add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
-                std::vector<double>& scratch);
+  void add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end, SlopeScratch& scratch);
   template <int Width>
   void add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
-                  std::vector<double>& scratch, Quadric& q);
+                  SlopeScratch& scratch, CornerQuadrics& corners);
   void add_edge_quadrics();
   bool is_seam(std::uint32_t corner_a, std::uint32_t corner_b) const;
   void price_components();
@@ -224,13 +256,33 @@ void Builder::make_channels() {
     state_.channels.push_back(std::move(channel));
   }
   for (Channel& channel : state_.channels) {
+    if (channel.kind == ChannelKind::fitted) channel.quadric_size = attribute_stride(channel.fit_width);
+    channel.stride = channel.quadric_size + static_cast<std::size_t>(channel.width);
     channel.slices.resize(meshes_.size());
     channel.scale.assign(meshes_.size(), 1.0);
   }
   make_columns();
+  reserve_records();
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     add_layer_channels(m);
     add_morph_channel(m);
+  }
+}
+
+/// Room for the values of all meshes at once: what grows leaves holes in memory.
+void Builder::reserve_records() {
+  for (Channel& channel : state_.channels) {
+    std::size_t count = 0;
+    for (const TriMesh* mesh : meshes_) {
+      if (channel.is_position_morph) count += mesh->vertex_count();
+      for (const AttributeLayer& layer : mesh->layers) {
+        if (&channel_for(layer) != &channel) continue;
+        count += layer.size();
+        if (channel.kind == ChannelKind::skin) break;  // its layers share one map
+      }
+    }
+    channel.records.reserve(count * channel.stride);
+    channel.layer_value.reserve(count);
   }
 }
 
@@ -271,7 +323,7 @@ void Builder::append_values(Channel& channel, std::size_t m, const std::vector<c
   }
   const std::size_t first = channel.layer_value.size();
   number_values(channel, m, *layers.front());
-  channel.values.resize(channel.layer_value.size() * static_cast<std::size_t>(channel.width), 0.0f);
+  channel.records.resize(channel.layer_value.size() * channel.stride, 0.0f);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const AttributeLayer& layer = *layers[i];
     const auto width = static_cast<std::size_t>(layer.width);
@@ -291,7 +343,6 @@ void Builder::append_values(Channel& channel, std::size_t m, const std::vector<c
 void Builder::number_values(Channel& channel, std::size_t m, const AttributeLayer& layer) {
   std::vector<std::uint32_t> number(layer.size(), kInvalid);
   const std::size_t first_face = state_.slots[m].first_face;
-  channel.layer_value.reserve(channel.layer_value.size() + layer.size());
   for (std::size_t f = first_face; f < first_face + face_count(m); ++f) {
     for (int k = 0; k < 3; ++k) {
       const ValueId id = layer.corner_value[corner(state_.mesh_face[f], k).index()];
@@ -314,7 +365,7 @@ void Builder::add_morph_channel(std::size_t m) {
   const MeshSlot& slot = state_.slots[m];
   const std::size_t first = channel.layer_value.size();
   channel.slices[m].push_back({kInvalid, 0, 3 * static_cast<int>(mesh.target_count()), Semantic::custom});
-  channel.values.resize((first + mesh.vertex_count()) * static_cast<std::size_t>(channel.width), 0.0f);
+  channel.records.resize((first + mesh.vertex_count()) * channel.stride, 0.0f);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     const VertexId id = state_.mesh_vertex[slot.first_vertex + v];
     channel.layer_value.push_back(ValueId{id.index()});
@@ -403,17 +454,11 @@ void Builder::scale_channel(Channel& channel) const {
 /// faces for a range of vertices of its own, so that sums come out the same for any number of threads.
 void Builder::add_face_quadrics() {
   CollapseMesh& mesh = state_.mesh;
-  mesh.quadrics.resize(mesh.vertices.size());
-  for (Channel& channel : state_.channels) {
-    if (channel.kind != ChannelKind::fitted) continue;
-    const std::size_t count = channel.values.size() / static_cast<std::size_t>(channel.width);
-    channel.quadric.assign(count * attribute_stride(channel.fit_width), 0.0f);
-  }
   constexpr int kMostRanges = 8;
   const auto ranges = static_cast<std::size_t>(std::min(context_.thread_count(), kMostRanges));
   parallel_for(context_, mesh.vertices.size(), mesh.vertices.size() / ranges + 1,
                [&](std::size_t begin, std::size_t end) {
-                 std::vector<double> scratch;
+                 SlopeScratch scratch;
                  std::uint32_t f = 0;
                  for (std::uint32_t m = 0; m < meshes_.size(); ++m) {
                    for (std::size_t k = 0; k < face_count(m); ++k, ++f) {
@@ -423,50 +468,59 @@ void Builder::add_face_quadrics() {
                    }
                  }
                  for (std::size_t v = begin; v < end; ++v) {
-                   Quadric& q = mesh.quadrics[v];
-                   q.add_point(Vec3d(mesh.vertices[v].position),
-                               kRegularization * q.weight * weight_of(static_cast<std::uint32_t>(v)));
+                   Quadric pull;
+                   pull.add_point({},
+                                  kRegularization * static_cast<double>(mesh.vertices[v].quadric.weight()));
+                   mesh.vertices[v].quadric.add_scaled(pull, weight_of(static_cast<std::uint32_t>(v)));
                  }
                });
 }
 
 /// Adds face f of mesh m to those of its corners whose vertices are in [begin, end).
 void Builder::add_face(std::uint32_t f, std::uint32_t m, std::size_t begin, std::size_t end,
-                       std::vector<double>& scratch) {
+                       SlopeScratch& scratch) {
   CollapseMesh& mesh = state_.mesh;
   const auto& t = mesh.faces[f].vertex;
   const Vec3d p0 = mesh.position(t[0]);
   const auto [normal, area] = shape_of(f);
-  Quadric q;
-  q.weight = area / 3;
-  q.add_linear(normal, -dot(normal, p0), q.weight);
+  CornerQuadrics corners;
+  corners.squares.weight = area / 3;
+  corners.squares.add_linear(normal, 0, area / 3);
   if (area > 1e-16) {
     const FaceFrame frame{
-        f, m, q.weight, p0,
+        f, m, area / 3, p0,
         TriangleGradient(mesh.position(t[1]) - p0, mesh.position(t[2]) - p0, normal, 2 * area)};
     for (Channel& channel : state_.channels) {
       if (channel.kind != ChannelKind::fitted || channel.corner_value[3 * f] == kInvalid) continue;
       switch (channel.fit_width) {
-        case 2: add_slopes<2>(channel, frame, begin, end, scratch, q); break;
-        case 3: add_slopes<3>(channel, frame, begin, end, scratch, q); break;
-        default: add_slopes<0>(channel, frame, begin, end, scratch, q);
+        case 2: add_slopes<2>(channel, frame, begin, end, scratch, corners); break;
+        case 3: add_slopes<3>(channel, frame, begin, end, scratch, corners); break;
+        default: add_slopes<0>(channel, frame, begin, end, scratch, corners);
       }
     }
   }
-  for (const std::uint32_t v : t) {
-    if (v >= begin && v < end) mesh.quadrics[v].add_scaled(q, weight_of(v));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t v = t[k];
+    if (v >= begin && v < end) mesh.vertices[v].quadric.add_scaled(corners.at(k), weight_of(v));
   }
 }
 
-/// Adds how a channel runs over a face, as linear functions in lengths, to the face's quadric and to those
-/// of its values. What is too steep is damped. `Width` is what fits the channel, or 0 for any.
+/// Adds how a channel runs over a face, as linear functions in lengths, to the quadrics of its corners and of
+/// its values. What is too steep is damped. `Width` is what fits the channel, or 0 for any.
 template <int Width>
 void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t begin, std::size_t end,
-                         std::vector<double>& scratch, Quadric& q) {
+                         SlopeScratch& scratch, CornerQuadrics& corners) {
   const int width = Width > 0 ? Width : channel.fit_width;
   const std::size_t stride = attribute_stride(width);
-  scratch.resize(std::max(scratch.size(), stride));
-  double* const slopes = scratch.data();  // in the layout of attribute quadrics
+  // In the layout of attribute quadrics, and the same rounded:
+  std::array<double, attribute_stride(Width)> slopes_here;
+  std::array<float, attribute_stride(Width)> rounded_here;
+  if constexpr (Width == 0) {
+    scratch.slopes.resize(std::max(scratch.slopes.size(), stride));
+    scratch.rounded.resize(scratch.slopes.size());
+  }
+  double* const slopes = Width > 0 ? slopes_here.data() : scratch.slopes.data();
+  float* const rounded = Width > 0 ? rounded_here.data() : scratch.rounded.data();
   const double scale = channel.scale[frame.mesh];
   std::array<const float*, 3> s;
   for (std::size_t k = 0; k < 3; ++k) s[k] = channel.value(channel.corner_value[3 * frame.face + k]);
@@ -482,16 +536,23 @@ void Builder::add_slopes(Channel& channel, const FaceFrame& frame, std::size_t b
   const double limit = steepness_limit(channel, scale);
   const double share = frame.weight * (steepness > limit ? limit / steepness : 1);
   for (int k = 0; k < width; ++k) {
-    const double* g = slopes + 4 * k;
-    q.add_linear({g[0], g[1], g[2]}, g[3], share);
+    const Vec3d g{slopes[4 * k], slopes[4 * k + 1], slopes[4 * k + 2]};
+    corners.add_linear(g, {scale * s[0][k], scale * s[1][k], scale * s[2][k]}, share);
   }
   slopes[4 * width] = 1;
-  for (std::size_t i = 0; i < stride; ++i) slopes[i] *= share;
-  for (std::uint32_t c = 3 * frame.face; c < 3 * frame.face + 3; ++c) {
-    const std::uint32_t v = state_.mesh.vertex(c);
-    if (v < begin || v >= end) continue;
-    const double weight = weight_of(v);
-    float* const value = channel.value_quadric(channel.corner_value[c]);
+  for (std::size_t i = 0; i < stride; ++i) {
+    slopes[i] *= share;
+    rounded[i] = static_cast<float>(slopes[i]);
+  }
+  const std::array<std::uint32_t, 3>& vertices = state_.mesh.faces[frame.face].vertex;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (vertices[k] < begin || vertices[k] >= end) continue;
+    float* const value = channel.value_quadric(channel.corner_value[3 * frame.face + k]);
+    if (importance_weight_.empty()) {
+      for (std::size_t i = 0; i < stride; ++i) value[i] += rounded[i];
+      continue;
+    }
+    const double weight = importance_weight_[vertices[k]];
     for (std::size_t i = 0; i < stride; ++i) value[i] += static_cast<float>(weight * slopes[i]);
   }
 }
@@ -520,11 +581,11 @@ void Builder::add_edge_quadrics() {
     const std::uint32_t v = mesh.vertex(c), w = mesh.vertex(CollapseMesh::next(c));
     const Vec3d edge = state_.mesh.position(w) - state_.mesh.position(v);
     const Vec3d upright = normalized(cross(shape_of(c / 3).normal, edge));
-    const double d = -dot(upright, state_.mesh.position(v));
-    const double share = 0.5 * weight * dot(edge, edge);
+    Quadric q;  // around both ends: the plane goes through them
+    q.weight = 0.5 * weight * dot(edge, edge);
+    q.add_linear(upright, 0, q.weight);
     for (const std::uint32_t end : {v, w}) {
-      state_.mesh.quadrics[end].add_linear(upright, d, share * weight_of(end));
-      state_.mesh.quadrics[end].weight += share;
+      state_.mesh.vertices[end].quadric.add_scaled(q, weight_of(end));
     }
   };
   for (std::uint32_t c = 0; c < 3 * mesh.faces.size(); ++c) {
@@ -545,6 +606,7 @@ void Builder::add_edge_quadrics() {
 void Builder::price_components() {
   state_.components = find_components(state_.mesh);
   state_.vanish.resize(state_.components.count());
+  if (state_.vanish.size() < 2) return;  // the last one never vanishes
   for (std::size_t i = 0; i < state_.vanish.size(); ++i) {
     Box box;
     double weight = 0;
@@ -564,9 +626,16 @@ void Builder::price_components() {
 }  // namespace
 
 std::uint32_t CollapseState::find_slot(std::uint32_t item, std::uint32_t MeshSlot::*first) const {
-  const auto after = std::upper_bound(slots.begin(), slots.end(), item,
-                                      [&](std::uint32_t x, const MeshSlot& slot) { return x < slot.*first; });
-  return static_cast<std::uint32_t>(after - slots.begin()) - 1;
+  // All the same for a few: nothing foretells which half is right.
+  constexpr std::size_t kFew = 8;
+  const auto is_after = [&](std::uint32_t x, const MeshSlot& slot) { return x < slot.*first; };
+  if (slots.size() > kFew) {
+    const auto after = std::upper_bound(slots.begin(), slots.end(), item, is_after);
+    return static_cast<std::uint32_t>(after - slots.begin()) - 1;
+  }
+  std::uint32_t slot = 0;
+  for (std::size_t i = 1; i < slots.size(); ++i) slot += !is_after(item, slots[i]);
+  return slot;
 }
 
 CollapseState make_collapse_state(std::span<const TriMesh* const> meshes, std::span<const double> scales,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/base/context.h"
+#include "fovea/base/line_allocator.h"
 #include "fovea/base/math.h"
 #include "fovea/model/field.h"
 #include "fovea/model/tri_mesh.h"
@@ -52,23 +53,23 @@ struct Channel {
   int set = 0;
   std::string name;
   bool is_position_morph = false;
-  int fit_width = 0;           ///< Leading floats of a value that are fitted; the others are interpolated.
-  int width = 0;               ///< Floats per value.
-  Column corner_value;         ///< [#F × 3] or kInvalid.
-  Column single;               ///< [#V]: the vertex's only value, kMany or kInvalid.
-  std::vector<float> values;   ///< [#values × width], in the layer's units.
-  std::vector<float> quadric;  ///< [#values × attribute_stride(fit_width)] if fitted.
+  int fit_width = 0;  ///< Leading floats of a value that are fitted; the others are interpolated.
+  int width = 0;      ///< Floats per value.
+  std::size_t quadric_size = 0, stride = 0;  ///< Floats of a record, and of the quadric in it.
+  Column corner_value;                       ///< [#F × 3] or kInvalid.
+  Column single;                             ///< [#V]: the vertex's only value, kMany or kInvalid.
+  /// Of each value its quadric, if it is fitted, then its numbers in the layer's units: what is read together
+  /// lies together, that of normals on one cache line. [#values × stride]
+  std::vector<float, LineAllocator<float>> records;
   std::vector<std::vector<ChannelSlice>> slices;  ///< [#meshes]; empty where the mesh lacks it.
   std::vector<ValueId> layer_value;               ///< [#values], of its mesh's layers.
   std::vector<double> scale;  ///< [#meshes], from the layer's units to lengths of the engine.
 
   static constexpr std::uint32_t kMany = kInvalid - 1;
-  float* value(std::uint32_t id) { return values.data() + id * static_cast<std::size_t>(width); }
-  const float* value(std::uint32_t id) const { return values.data() + id * static_cast<std::size_t>(width); }
-  float* value_quadric(std::uint32_t id) { return quadric.data() + id * attribute_stride(fit_width); }
-  const float* value_quadric(std::uint32_t id) const {
-    return quadric.data() + id * attribute_stride(fit_width);
-  }
+  float* value(std::uint32_t id) { return records.data() + id * stride + quadric_size; }
+  const float* value(std::uint32_t id) const { return records.data() + id * stride + quadric_size; }
+  float* value_quadric(std::uint32_t id) { return records.data() + id * stride; }
+  const float* value_quadric(std::uint32_t id) const { return records.data() + id * stride; }
   bool is_uv() const { return semantic == Semantic::uv; }
 };
 

@@ -19,12 +19,18 @@ std::uint32_t CollapseStepper::collapse(std::uint32_t e, Vec3d p, double error) 
   if (views_ != nullptr) views_->before_collapse(a, b, p);
   merge_.apply(a, b, m, record_);
   dropped_.clear();
+  note_twins(a, b);
   for (const std::uint32_t f : legality_.shared_faces(a)) drop_face(f);
-  merge_edges(a, b);
+  if (legality_.is_plain()) {
+    merge_twins(a, b);
+  } else {
+    merge_edges(a, b);
+  }
   drop_coincident_faces(b);
 
+  const Quadric q = mesh_.quadric(a) + mesh_.quadric(b);
   mesh_.vertices[b].position = Vec3f(p);
-  mesh_.quadrics[b] += mesh_.quadrics[a];
+  mesh_.set_quadric(b, q);
   if (mesh_.vertices[a].locked) mesh_.vertices[b].locked = 1;
   if (mesh_.vertices[a].refused) mesh_.vertices[b].refused = 1;
   retire_values(a, b);
@@ -67,23 +73,57 @@ void CollapseStepper::drop_face(std::uint32_t f) {
   record_.removed_faces.push_back(state_.mesh_face[f]);
 }
 
+/// Notes which edges of the faces between a and b become one.
+void CollapseStepper::note_twins(std::uint32_t a, std::uint32_t b) {
+  twins_.clear();
+  for (const std::uint32_t f : legality_.shared_faces(a)) {
+    const CollapseFace& face = mesh_.faces[f];
+    const auto k = static_cast<std::uint32_t>(std::find(face.vertex.begin(), face.vertex.end(), a) -
+                                              face.vertex.begin());
+    const std::uint32_t n = CollapseMesh::after(k), p = CollapseMesh::before(k);
+    // Of the other two corners one is b's, and the edge between them is its edge to the other.
+    twins_.push_back({face.edge[face.vertex[n] == b ? p : k], face.edge[n]});
+  }
+}
+
+/// Gives a's triangles and edges to b, where only edges of the faces between them become one.
+void CollapseStepper::merge_twins(std::uint32_t a, std::uint32_t b) {
+  std::erase_if(twins_, [&](const TwinEdges& twins) { return !mesh_.edge_alive(twins.at_b); });
+  const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
+    const std::uint32_t e = mesh_.edge(half_edge);
+    std::uint32_t kept = e;
+    for (const TwinEdges& twins : twins_) kept = twins.at_a == e ? twins.at_b : kept;
+    if (kept == e) {
+      mesh_.edges[e].ends = {b, w};
+      return;
+    }
+    mesh_.edge(half_edge) = kept;
+    mesh_.edges[kept].add(half_edge);
+    leave_edge(e, half_edge);
+  };
+  mesh_.for_ring(a, [&](std::uint32_t c) {
+    const CornerView at_c = mesh_.view(c);
+    take_over(c, at_c.next);
+    take_over(CollapseMesh::previous(c), at_c.previous);
+    mesh_.faces[c / 3].vertex[c % 3] = b;
+  });
+  mesh_.join_rings(a, b);
+}
+
 /// Gives a's triangles and edges to b; two edges to the same neighbour become one.
 void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
-  // A neighbour of b is marked, with its edge to b.
-  const std::uint32_t mark = mesh_.new_mark();
-  const auto note = [&](std::uint32_t w, std::uint32_t e) {
-    mesh_.vertices[w].mark = mark;
-    mesh_.vertices[w].mark_count = e;
-  };
+  // Of a neighbour of b is noted its edge to b, plus one.
+  notes_.clear(2 * (mesh_.ring(a).size() + mesh_.ring(b).size()));
   mesh_.for_ring(b, [&](std::uint32_t c) {
     const CornerView at_c = mesh_.view(c);
-    note(at_c.next, at_c.to_next);
-    note(at_c.previous, at_c.to_previous);
+    notes_[notes_.place(at_c.next)] = at_c.to_next + 1;
+    notes_[notes_.place(at_c.previous)] = at_c.to_previous + 1;
   });
   const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
     const std::uint32_t e = mesh_.edge(half_edge);
-    const std::uint32_t kept = mesh_.vertices[w].mark == mark ? mesh_.vertices[w].mark_count : e;
-    note(w, kept);
+    std::uint32_t& note = notes_[notes_.place(w)];
+    if (note == 0) note = e + 1;
+    const std::uint32_t kept = note - 1;
     if (kept == e) {
       mesh_.edges[e].ends = {b, w};
       return;
@@ -137,7 +177,7 @@ void CollapseStepper::retire_values(std::uint32_t a, std::uint32_t b) {
       bool is_used = false;
       for (const std::uint32_t d : ring) is_used |= channel.corner_value[d] == value;
       if (is_used) continue;
-      mesh_.quadrics[v] += cost_.separate(channel, v, value);
+      mesh_.set_quadric(v, mesh_.quadric(v) + cost_.separate(channel, v, value));
       std::fill_n(channel.value_quadric(value), attribute_stride(channel.fit_width), 0.0f);
       retired = true;
     }

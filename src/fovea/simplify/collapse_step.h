@@ -10,6 +10,7 @@
 #include "fovea/simplify/legality.h"
 #include "fovea/simplify/record.h"
 #include "fovea/simplify/value_merge.h"
+#include "fovea/simplify/vertex_notes.h"
 
 namespace fovea {
 
@@ -41,7 +42,9 @@ class CollapseStepper {
   double error() const { return error_; }
 
  private:
+  void note_twins(std::uint32_t a, std::uint32_t b);
   void merge_edges(std::uint32_t a, std::uint32_t b);
+  void merge_twins(std::uint32_t a, std::uint32_t b);
   void drop_coincident_faces(std::uint32_t b);
   void leave_edge(std::uint32_t e, std::uint32_t half_edge);
   void drop_face(std::uint32_t f);
@@ -64,7 +67,14 @@ class CollapseStepper {
     std::uint32_t corner, vertex;
   };
   std::vector<DroppedCorner> dropped_;
-  std::vector<std::uint32_t> ring_;  // scratch
+  /// Edges of a dropped face that become one.
+  struct TwinEdges {
+    std::uint32_t at_a, at_b;
+  };
+  std::vector<TwinEdges> twins_;
+  // Scratch:
+  VertexNotes notes_;
+  std::vector<std::uint32_t> ring_;
 };
 
 }  // namespace fovea

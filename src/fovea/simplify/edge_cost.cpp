@@ -4,7 +4,6 @@
 #include <array>
 #include <type_traits>
 
-#include "fovea/base/prefetch.h"
 #include "fovea/simplify/value_classes.h"
 
 namespace fovea {
@@ -61,15 +60,16 @@ void settle_alone(Quadric& q, const Channel& channel, int width, std::uint32_t v
 }  // namespace
 
 EdgeCost::EdgeCost(const CollapseState& state, Placement placement)
-    : state_(state), mesh_(state.mesh), placement_(placement), slot_(mesh_.vertices.size(), kInvalid) {
+    : state_(state), mesh_(state.mesh), placement_(placement) {
   std::size_t count = 0;
-  for (std::uint32_t v = 0; v < slot_.size(); ++v) {
+  for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
     count += std::any_of(state.channels.begin(), state.channels.end(), [&](const Channel& channel) {
       return channel.kind == ChannelKind::fitted && channel.single[v] == Channel::kMany;
     });
   }
   seam_.reserve(count * state.channels.size());
-  for (std::uint32_t v = 0; v < slot_.size(); ++v) refresh(v);
+  if (count == 0) return;
+  for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) refresh(v);
 }
 
 void EdgeCost::refresh(std::uint32_t v) {
@@ -77,13 +77,13 @@ void EdgeCost::refresh(std::uint32_t v) {
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
     const Channel& channel = state_.channels[i];
     if (channel.kind != ChannelKind::fitted || channel.single[v] != Channel::kMany) continue;
-    if (slot_[v] == kInvalid) take_slot(v);
+    if (!has_many(v)) take_slot(v);
     seam_values(v, i) = look_at_values(channel, v);
   }
 }
 
 void EdgeCost::forget(std::uint32_t v) {
-  if (slot_[v] == kInvalid) return;
+  if (!has_many(v)) return;
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
     SeamValues& values = seam_values(v, i);
     if (!values.is_listed()) free_sums_.push_back(values.value[0]);
@@ -94,6 +94,7 @@ void EdgeCost::forget(std::uint32_t v) {
 }
 
 void EdgeCost::take_slot(std::uint32_t v) {
+  if (slot_.empty()) slot_.assign(mesh_.vertices.size(), kInvalid);
   if (free_slots_.empty()) {
     free_slots_.push_back(static_cast<std::uint32_t>(seam_.size() / state_.channels.size()));
     seam_.resize(seam_.size() + state_.channels.size());
@@ -222,8 +223,9 @@ void EdgeCost::settle(Quadric& q, std::size_t channel_index, std::uint32_t a, st
 
 Quadric EdgeCost::quadric(std::uint32_t e) const {
   const auto [a, b] = mesh_.edges[e].ends;
-  Quadric q = mesh_.quadrics[a] + mesh_.quadrics[b];
+  Quadric q = mesh_.quadric(a) + mesh_.quadric(b);
   EdgeCorners corners;
+  if (state_.channels.empty()) return q;
   if (has_many(a) || has_many(b)) corners = mesh_.edge_corners(e, a);
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
     const Channel& channel = state_.channels[i];
@@ -257,10 +259,8 @@ std::size_t EdgeCost::fallbacks(std::uint32_t e, const Quadric& q, Candidate* ou
 void EdgeCost::fetch_ends(std::uint32_t e) const {
   for (const std::uint32_t v : mesh_.edges[e].ends) {
     prefetch(&mesh_.vertices[v]);
-    prefetch(&mesh_.quadrics[v]);
-    prefetch(&mesh_.quadrics[v].weight);
     if (state_.channels.empty()) continue;
-    prefetch(&slot_[v]);
+    fetch_slot(v);
     prefetch(&state_.channels.front().single[v]);
   }
 }
@@ -304,7 +304,7 @@ void EdgeCost::fetch_seams(std::uint32_t e) const {
 void EdgeCost::fetch_value(const Channel& channel, std::uint32_t value) const {
   const float* const quadric = channel.value_quadric(value);
   prefetch(quadric);
-  prefetch(quadric + attribute_stride(channel.fit_width) - 1);
+  prefetch(quadric + channel.stride - 1);
 }
 
 Candidate EdgeCost::best_place(std::uint32_t e, const Quadric& q) const {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/base/prefetch.h"
 #include "fovea/simplify/collapse_state.h"
 
 namespace fovea {
@@ -34,7 +35,7 @@ class EdgeCost {
   /// To be called when v has no triangles any more.
   void forget(std::uint32_t v);
   /// Whether v has several values of some fitted attribute, or had when it was last looked at.
-  bool has_many(std::uint32_t v) const { return slot_[v] != kInvalid; }
+  bool has_many(std::uint32_t v) const { return !slot_.empty() && slot_[v] != kInvalid; }
   /// What a value of v makes up for by itself: texture coordinates at a seam stay as they are, everything
   /// else becomes the best for the position.
   Quadric separate(const Channel& channel, std::uint32_t v, std::uint32_t value) const;
@@ -52,6 +53,10 @@ class EdgeCost {
   void fetch_ends(std::uint32_t e) const;
   void fetch_values(std::uint32_t e) const;
   void fetch_seams(std::uint32_t e) const;
+  /// What `has_many(v)` will read.
+  void fetch_slot(std::uint32_t v) const {
+    if (!slot_.empty()) prefetch(&slot_[v]);
+  }
 
  private:
   /// The values of one channel at a vertex that has several.
@@ -88,7 +93,8 @@ class EdgeCost {
   const CollapseState& state_;
   const CollapseMesh& mesh_;
   const Placement placement_;
-  std::vector<std::uint32_t> slot_;  // [#V] in `seam_`, kInvalid without a channel of several values
+  // [#V] in `seam_`, kInvalid without a channel of several values; empty if no vertex ever had one:
+  std::vector<std::uint32_t> slot_;
   std::vector<std::uint32_t> free_slots_;
   std::vector<SeamValues> seam_;  // [#slots × #channels]
   std::vector<Quadric> sums_;     // what values that are not listed make up for by themselves

@@ -18,13 +18,14 @@ double longest_squared(Vec3d a, Vec3d b, Vec3d c) {
 }  // namespace
 
 bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
-  CollapseMesh& mesh = state_.mesh;
+  const CollapseMesh& mesh = state_.mesh;
   a_ = a;
   b_ = b;
-  // A neighbour of a is marked `at_a`; one of b `at_b`; one of both, `at_both`; `counted` once it has
-  // been seen across the edge. `mark_count` counts the triangles on its edge to a, then to b. Those of one
-  // triangle are open: there is a boundary. No branches here: nothing foretells them.
-  const std::uint32_t at_a = mesh.new_mark(), at_b = at_a + 1, at_both = at_a + 2, counted = at_a + 3;
+  // Of each neighbour is noted whether it has one triangle on its edge to a, or more; the same of b; and
+  // whether it has been counted as a vertex across the edge. Edges of one triangle are open: there is a
+  // boundary. No branches here: nothing foretells them.
+  constexpr std::uint32_t kOneAtA = 1, kMoreAtA = 2, kOneAtB = 4, kMoreAtB = 8, kCounted = 16;
+  constexpr std::uint32_t kBoth = kOneAtA | kOneAtB;
   std::size_t open_a = 0, open_b = 0, common = 0;
   const auto ring_a = mesh.ring(a), ring_b = mesh.ring(b);
   make_room(ring_a.size() + ring_b.size());
@@ -32,10 +33,10 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   for (const std::uint32_t c : ring_a) {
     const CornerView at_c = mesh.view(c);
     for (const std::uint32_t w : {at_c.next, at_c.previous}) {
-      CollapseVertex& vertex = mesh.vertices[w];
-      vertex.mark_count = vertex.mark_count * (vertex.mark == at_a) + 1;
-      vertex.mark = at_a;
-      open_a += std::size_t{vertex.mark_count == 1} - std::size_t{vertex.mark_count == 2};
+      std::uint32_t& note = notes_[notes_.place(w)];
+      const std::uint32_t known = note & kOneAtA;
+      open_a += std::size_t{known == 0} - std::size_t{(note & (kOneAtA | kMoreAtA)) == kOneAtA};
+      note |= kOneAtA << known;
     }
     const bool is_shared = (at_c.next == b) | (at_c.previous == b);
     far_[far] = {c, at_c.next, at_c.previous};
@@ -46,18 +47,19 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   far_at_a_ = far;
   for (const std::uint32_t c : ring_b) {
     const CornerView at_c = mesh.view(c);
-    for (const std::uint32_t w : {at_c.next, at_c.previous}) {
-      CollapseVertex& vertex = mesh.vertices[w];
-      const bool is_common = vertex.mark == at_a, is_known = vertex.mark - at_b <= at_both - at_b;
-      vertex.mark_count = vertex.mark_count * is_known + 1;
-      vertex.mark = is_known ? vertex.mark : at_b + is_common;
-      common += is_common;
-      open_b += std::size_t{vertex.mark_count == 1} - std::size_t{vertex.mark_count == 2};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::uint32_t at = notes_.place(k == 0 ? at_c.next : at_c.previous);
+      places_[far][k] = at;
+      std::uint32_t& note = notes_[at];
+      const std::uint32_t known = (note & kOneAtB) / kOneAtB;
+      common += (note & kBoth) == kOneAtA;
+      open_b += std::size_t{known == 0} - std::size_t{(note & (kOneAtB | kMoreAtB)) == kOneAtB};
+      note |= kOneAtB << known;
     }
     const bool is_shared = (at_c.next == a) | (at_c.previous == a);
     far_[far] = {c, at_c.next, at_c.previous};
+    across_[shared_at_b] = places_[far][at_c.next == a];
     far += !is_shared;
-    across_[shared_at_b] = at_c.next == a ? at_c.previous : at_c.next;
     shared_at_b_[shared_at_b] = c / 3;
     shared_at_b += is_shared;
   }
@@ -65,14 +67,15 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   shared_count_ = shared_at_b;
   std::size_t common_across = 0;
   for (std::size_t i = 0; i < shared_at_b; ++i) {
-    std::uint32_t& mark = mesh.vertices[across_[i]].mark;
-    common_across += mark == at_both;
-    mark = counted;
+    std::uint32_t& note = notes_[across_[i]];
+    common_across += (note & (kBoth | kCounted)) == kBoth;
+    note |= kCounted;
   }
+  is_plain_ = common == shared_at_b && common_across == shared_at_b;
   std::size_t coincident = 0;
   for (std::size_t i = far_at_a_; i < far && common >= 2; ++i) {
     const auto [c, n, p] = far_[i];
-    if (std::min(mesh.vertices[n].mark, mesh.vertices[p].mark) < at_both) continue;
+    if ((notes_[places_[i][0]] & notes_[places_[i][1]] & kBoth) != kBoth) continue;
     for (std::size_t j = 0; j < far_at_a_; ++j) {
       const auto [d, x, y] = far_[j];
       coincident += (x == n && y == p) || (x == p && y == n);
@@ -88,10 +91,12 @@ bool Legality::look_at(std::uint32_t a, std::uint32_t b) {
   return topology_ == Block::none;
 }
 
-/// Room for `corners` corners at both ends. What is there stays: it will be written over.
+/// Room for `corners` corners at both ends, without notes. What else is there stays: it will be written over.
 void Legality::make_room(std::size_t corners) {
+  notes_.clear(2 * corners);
   if (far_.size() >= corners) return;
   far_.resize(corners);
+  places_.resize(corners);
   across_.resize(corners);
   shared_at_a_.resize(corners);
   shared_at_b_.resize(corners);
@@ -119,14 +124,14 @@ bool Legality::shape(Vec3d p) const {
   return true;
 }
 
-bool Legality::keeps_texture(const Far& face, std::size_t channel_index, const ValueMerge& merge) const {
+/// `planned` is what the corner's texture coordinates become.
+bool Legality::keeps_texture(const Far& face, std::size_t channel_index, const float* planned) const {
   const Channel& channel = state_.channels[channel_index];
   const std::uint32_t own = channel.corner_value[face.corner];
-  if (own == kInvalid) return true;
   const auto uv = [](const float* x) { return Vec2d{x[0], x[1]}; };
   const Vec2d q1 = uv(channel.value(channel.corner_value[CollapseMesh::next(face.corner)])),
               q2 = uv(channel.value(channel.corner_value[CollapseMesh::previous(face.corner)]));
-  const Vec2d q0 = uv(channel.value(own)), q = uv(merge.planned(channel_index, own));
+  const Vec2d q0 = uv(channel.value(own)), q = uv(planned);
   const double before = cross(q1 - q0, q2 - q0), after = cross(q1 - q, q2 - q);
   return before == 0 || (before > 0) == (after > 0);
 }
@@ -134,8 +139,11 @@ bool Legality::keeps_texture(const Far& face, std::size_t channel_index, const V
 bool Legality::texture(const ValueMerge& merge) const {
   for (std::size_t i = 0; i < state_.channels.size(); ++i) {
     if (!state_.channels[i].is_uv()) continue;
+    const float* const for_all = merge.planned_for_all(i);
     for (std::size_t k = 0; k < far_count_; ++k) {
-      if (!keeps_texture(far_[k], i, merge)) return false;
+      const std::uint32_t own = state_.channels[i].corner_value[far_[k].corner];
+      if (own == kInvalid) continue;
+      if (!keeps_texture(far_[k], i, for_all != nullptr ? for_all : merge.planned(i, own))) return false;
     }
   }
   return true;

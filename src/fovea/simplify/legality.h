@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include "fovea/simplify/collapse_state.h"
 #include "fovea/simplify/value_merge.h"
+#include "fovea/simplify/vertex_notes.h"
 
 namespace fovea {
 
@@ -17,7 +19,7 @@ enum class Block { none, topology, last };
 /// what they found there.
 class Legality {
  public:
-  explicit Legality(CollapseState& state) : state_(state) {}
+  explicit Legality(const CollapseState& state) : state_(state) {}
 
   /// Looks at the edge a–b, which the other rules are then about: the link condition (Dey et al. 1999).
   /// The neighbours that a and b share are those across their common triangles, an inner edge does not
@@ -31,6 +33,9 @@ class Legality {
   std::span<const std::uint32_t> shared_faces(std::uint32_t v) const {
     return {(v == a_ ? shared_at_a_ : shared_at_b_).data(), shared_count_};
   }
+  /// Whether a and b have no neighbour in common but those across their triangles, each of which is across
+  /// one.
+  bool is_plain() const { return is_plain_; }
   /// Whether the edge leaves triangles on each other.
   bool may_coincide() const { return topology_ == Block::topology; }
 
@@ -48,15 +53,18 @@ class Legality {
   };
   void make_room(std::size_t corners);
   bool keeps_shape(const Far& face, Vec3d from, Vec3d to) const;
-  bool keeps_texture(const Far& face, std::size_t channel, const ValueMerge& merge) const;
+  bool keeps_texture(const Far& face, std::size_t channel, const float* planned) const;
 
-  CollapseState& state_;  // for the vertices' marks; nothing else changes
+  const CollapseState& state_;
+  VertexNotes notes_;
   Block topology_ = Block::none;
+  bool is_plain_ = false;
   std::uint32_t a_ = kInvalid, b_ = kInvalid;
   // With room for more than there is now:
   std::vector<Far> far_;  // those at a, then those at b
   std::size_t far_count_ = 0, far_at_a_ = 0;
-  std::vector<std::uint32_t> across_;                     // vertices opposite to the edge
+  std::vector<std::array<std::uint32_t, 2>> places_;  // in `notes_`, of `next` and `previous` of those at b
+  std::vector<std::uint32_t> across_;                 // places of the vertices opposite to the edge
   std::vector<std::uint32_t> shared_at_a_, shared_at_b_;  // triangles on the edge, as the rings have them
   std::size_t shared_count_ = 0;
 };

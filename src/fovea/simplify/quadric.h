@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "fovea/base/math.h"
 
@@ -69,6 +71,53 @@ struct alignas(32) Quadric {
     p = {s * (m00 * bx + m01 * by + m02 * bz), s * (m01 * bx + m11 * by + m12 * bz),
          s * (m02 * bx + m12 * by + m22 * bz)};
     return true;
+  }
+};
+
+/// A Quadric as a function of the way from its vertex, in single precision. Near the surface all its terms
+/// are small, so that what floats lose is far below the pull towards the original vertices (kRegularization
+/// in collapse_state.cpp); around a point far away they would lose everything.
+struct VertexQuadric {
+  /// In the order of Quadric's members.
+  std::array<float, 11> numbers{};
+
+  VertexQuadric() = default;
+  /// `q`, for a vertex at `at`.
+  VertexQuadric(Quadric q, Vec3d at) {
+    move(q, at);
+    set(q);
+  }
+  float weight() const { return numbers[10]; }
+  /// As a function of points, of a vertex at `at`.
+  Quadric around_origin(Vec3d at) const {
+    Quadric q = get();
+    move(q, -at);
+    return q;
+  }
+  /// Adds w · q, a function of the way from the vertex as well; its weight is that of q, whatever w.
+  void add_scaled(const Quadric& q, double w) {
+    Quadric sum = get();
+    sum.add_scaled(q, w);
+    set(sum);
+  }
+
+ private:
+  Quadric get() const {
+    std::array<double, 11> q;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = static_cast<double>(numbers[i]);
+    return {q[0], q[1], q[2], q[3], q[4], q[5], q[6], q[7], q[8], q[9], q[10]};
+  }
+  void set(const Quadric& q) {
+    const std::array<double, 11> all{q.xx, q.xy, q.xz, q.yy, q.yz, q.zz, q.bx, q.by, q.bz, q.c, q.weight};
+    for (std::size_t i = 0; i < all.size(); ++i) numbers[i] = static_cast<float>(all[i]);
+  }
+  /// p ↦ q(p + by)
+  static void move(Quadric& q, Vec3d by) {
+    const Vec3d b{q.bx + q.xx * by.x + q.xy * by.y + q.xz * by.z,
+                  q.by + q.xy * by.x + q.yy * by.y + q.yz * by.z,
+                  q.bz + q.xz * by.x + q.yz * by.y + q.zz * by.z};
+    q.c += (q.bx + b.x) * by.x + (q.by + b.y) * by.y + (q.bz + b.z) * by.z;
+    q.bx = b.x, q.by = b.y, q.bz = b.z;
   }
 };
 

@@ -30,7 +30,8 @@ void ValueClasses::find(const CollapseMesh& mesh, const Channel& channel, std::u
                         const EdgeCorners& corners) {
   entries_.clear();
   const std::uint32_t single_a = channel.single[a], single_b = channel.single[b];
-  if (single_a < Channel::kMany && single_b < Channel::kMany) {
+  is_one_pair_ = single_a < Channel::kMany && single_b < Channel::kMany;
+  if (is_one_pair_) {
     entries_.push_back({single_a, 0, 1, false, single_b});
     entries_.push_back({single_b, 0, kInvalid, true, kInvalid});
     return;

@@ -96,6 +96,8 @@ class ValueClasses {
             const EdgeCorners& corners);
 
   std::size_t size() const { return entries_.size(); }
+  /// Whether there is one value at a and one at b, which join.
+  bool is_one_pair() const { return is_one_pair_; }
   const Entry& operator[](std::size_t i) const { return entries_[i]; }
   /// Calls f(entry) for the entries of class `root`.
   template <class F>
@@ -127,6 +129,7 @@ class ValueClasses {
   void rebuild_table();
 
   std::vector<Entry> entries_;
+  bool is_one_pair_ = false;
   // A pole can have thousands of values: beyond a few, they are found by a hash table (open addressing,
   // entries by index, a power of two in size).
   std::vector<std::uint32_t> table_;

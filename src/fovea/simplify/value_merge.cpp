@@ -161,7 +161,7 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
     for (std::uint32_t root = 0; root < plan.classes.size(); ++root) {
       if (plan.classes[root].root != root) continue;
       const std::uint32_t kept = plan.classes[root].kept;
-      if (!channel.quadric.empty()) {
+      if (channel.kind == ChannelKind::fitted) {
         float* to = channel.value_quadric(kept);
         plan.classes.for_class(root, [&](const ValueClasses::Entry& entry) {
           if (entry.value == kept) return;
@@ -171,16 +171,32 @@ void ValueMerge::apply(std::uint32_t a, std::uint32_t b, std::uint32_t mesh, Col
       }
       set_class(channel, plan, root, mesh, record);
     }
-    const auto relabel = [&](std::uint32_t c) {
-      std::uint32_t& value = channel.corner_value[c];
-      if (value != kInvalid) value = plan.classes.kept_for(value);
-    };
-    state_.mesh.for_ring(a, relabel);
-    state_.mesh.for_ring(b, relabel);
+    relabel(channel, plan.classes, a, b);
     const bool many = channel.single[a] == Channel::kMany || channel.single[b] == Channel::kMany;
     channel.single[b] = many ? Channel::kMany : plan.classes[0].kept;
     channel.single[a] = kInvalid;
   }
+}
+
+/// Gives the corners at a and b the values that theirs become.
+void ValueMerge::relabel(Channel& channel, const ValueClasses& classes, std::uint32_t a, std::uint32_t b) {
+  if (classes.is_one_pair()) {
+    const std::uint32_t kept = classes[0].kept;
+    state_.mesh.for_ring(a, [&](std::uint32_t c) {
+      std::uint32_t& value = channel.corner_value[c];
+      value = value == kInvalid ? kInvalid : kept;
+    });
+    return;
+  }
+  const auto relabel_corner = [&](std::uint32_t c) {
+    std::uint32_t& value = channel.corner_value[c];
+    if (value != kInvalid) value = classes.kept_for(value);
+  };
+  state_.mesh.for_ring(a, relabel_corner);
+  bool changes_b = false;
+  for (std::uint32_t i = 0; i < classes.size(); ++i)
+    changes_b |= classes[i].at_b && classes[classes[i].root].kept != classes[i].value;
+  if (changes_b) state_.mesh.for_ring(b, relabel_corner);
 }
 
 void ValueMerge::update_singles(std::uint32_t b) {

@@ -20,6 +20,11 @@ class ValueMerge {
   void plan(std::uint32_t e, std::uint32_t a, std::uint32_t b, Vec3d p);
   /// The planned numbers of a value that belongs to a or b.
   const float* planned(std::size_t channel, std::uint32_t value) const;
+  /// The same for all values at a and b, or null if they become several.
+  const float* planned_for_all(std::size_t channel) const {
+    const Plan& plan = plans_[channel];
+    return plan.classes.is_one_pair() ? plan.values.data() : nullptr;
+  }
 
   /// Carries out the plan: joins values and their quadrics, relabels the corners at a and b, sets
   /// numbers, records it. To be called while a and b still have their triangles.
@@ -35,6 +40,7 @@ class ValueMerge {
   void plan_class(const Channel& channel, Plan& plan, std::uint32_t root, std::uint32_t held);
   void fit(const Channel& channel, const Plan& plan, std::uint32_t root, float* out);
   void mix_skin(const Channel& channel, const float* at_a, const float* at_b, float* out) const;
+  void relabel(Channel& channel, const ValueClasses& classes, std::uint32_t a, std::uint32_t b);
   void set_class(Channel& channel, const Plan& plan, std::uint32_t root, std::uint32_t mesh,
                  CollapseRecord& record) const;
 
