@@ -14,8 +14,8 @@ std::unique_ptr<Verb> make_sample();
 
 std::vector<std::unique_ptr<Verb>> make_verbs() {
   std::vector<std::unique_ptr<Verb>> verbs;
-  for (const auto make : {make_info, make_simplify, make_lods, make_focus, make_texture, make_saliency, make_compare,
-                          make_render, make_sample})
+  for (const auto make : {make_info, make_simplify, make_lods, make_focus, make_texture, make_saliency,
+                          make_compare, make_render, make_sample})
     verbs.push_back(make());
   return verbs;
 }
