@@ -77,7 +77,7 @@ TEST(Suggestions, UnknownVerb) {
 
 TEST(Suggestions, NothingNearListsTheVerbs) {
   EXPECT_THAT(fovea({"qqqqqqqqqq"}).err,
-              HasSubstr("verbs are: info, simplify, lods, texture, saliency, compare, render, sample"));
+              HasSubstr("verbs are: info, simplify, lods, focus, texture, saliency, compare, render, sample"));
 }
 
 TEST(Suggestions, FlagBeforeTheVerb) {
@@ -98,7 +98,7 @@ TEST(Suggestions, AnOptionOfOtherVerbs) {
   for (const char* option : {"--quantize", "--no-quantize"}) {
     EXPECT_EQ(fovea({"info", "a.glb", option}).err,
               "fovea: error: unknown option '" + std::string(option) +
-                  "'\nhint: --quantize is an option of simplify, lods, texture, sample\n");
+                  "'\nhint: --quantize is an option of simplify, lods, focus, texture, sample\n");
   }
 }
 
