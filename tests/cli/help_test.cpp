@@ -76,8 +76,9 @@ TEST(Suggestions, UnknownVerb) {
 }
 
 TEST(Suggestions, NothingNearListsTheVerbs) {
-  EXPECT_THAT(fovea({"qqqqqqqqqq"}).err,
-              HasSubstr("verbs are: info, simplify, lods, focus, texture, saliency, compare, render, sample"));
+  EXPECT_THAT(
+      fovea({"qqqqqqqqqq"}).err,
+      HasSubstr("verbs are: info, simplify, lods, focus, texture, saliency, compare, render, sample"));
 }
 
 TEST(Suggestions, FlagBeforeTheVerb) {
