@@ -199,6 +199,8 @@ class FocusVerb : public Verb {
       const std::vector<double> target =
           target_.empty() ? std::vector<double>{sphere.center.x, sphere.center.y, sphere.center.z}
                           : parse_numbers("target", target_, 3, 3);
+      if (eye == target)
+        throw Error(ErrorKind::usage, "the eye is where it looks at", "--eye", "move it away from --target");
       return view_from({eye[0], eye[1], eye[2]}, {target[0], target[1], target[2]}, view_options_.fov_deg);
     }
     const std::vector<double> angles =

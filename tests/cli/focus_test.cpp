@@ -150,6 +150,7 @@ TEST_F(FocusVerb, RefusesWhatItCannotDo) {
   expect({"--at", "1,1", "--error", "0.1", "--view", "1,1", "--eye", "1,1,1"}, "give one of them");
   expect({"--at", "1,1", "--error", "0.1", "--law", "acuity", "--factor", "0"}, "--factor");
   expect({"--at", "1,1", "--error", "0.1", "--on-surface"}, "no surface");
+  expect({"--at", "1,1", "--error", "0.1", "--eye", "1,2,3", "--target", "1,2,3"}, "where it looks at");
   expect({"--at", "1,1", "--error", "0.1", "--target", "1,1,1"}, "--target needs --eye");
   const Outcome camera = focus({"-o", out("no.glb"), "--at", "1,1", "--error", "0.1", "--camera", "Front"});
   EXPECT_EQ(camera.code, 5) << camera.err;

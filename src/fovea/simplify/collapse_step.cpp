@@ -86,13 +86,12 @@ void CollapseStepper::note_twins(std::uint32_t a, std::uint32_t b) {
   }
 }
 
-/// Gives a's triangles and edges to b, where only edges of the faces between them become one.
-void CollapseStepper::merge_twins(std::uint32_t a, std::uint32_t b) {
-  std::erase_if(twins_, [&](const TwinEdges& twins) { return !mesh_.edge_alive(twins.at_b); });
+/// Gives a's triangles and edges to b. Of an edge e to w `kept_for(e, w)` says which edge it becomes: one of
+/// b's, or itself.
+template <class KeptFor>
+void CollapseStepper::give_ring(std::uint32_t a, std::uint32_t b, KeptFor&& kept_for) {
   const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
-    const std::uint32_t e = mesh_.edge(half_edge);
-    std::uint32_t kept = e;
-    for (const TwinEdges& twins : twins_) kept = twins.at_a == e ? twins.at_b : kept;
+    const std::uint32_t e = mesh_.edge(half_edge), kept = kept_for(e, w);
     if (kept == e) {
       mesh_.edges[e].ends = {b, w};
       return;
@@ -110,6 +109,16 @@ void CollapseStepper::merge_twins(std::uint32_t a, std::uint32_t b) {
   mesh_.join_rings(a, b);
 }
 
+/// Gives a's triangles and edges to b, where only edges of the faces between them become one.
+void CollapseStepper::merge_twins(std::uint32_t a, std::uint32_t b) {
+  std::erase_if(twins_, [&](const TwinEdges& twins) { return !mesh_.edge_alive(twins.at_b); });
+  give_ring(a, b, [&](std::uint32_t e, std::uint32_t) {
+    std::uint32_t kept = e;
+    for (const TwinEdges& twins : twins_) kept = twins.at_a == e ? twins.at_b : kept;
+    return kept;
+  });
+}
+
 /// Gives a's triangles and edges to b; two edges to the same neighbour become one.
 void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
   // Of a neighbour of b is noted its edge to b, plus one.
@@ -119,26 +128,11 @@ void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
     notes_[notes_.place(at_c.next)] = at_c.to_next + 1;
     notes_[notes_.place(at_c.previous)] = at_c.to_previous + 1;
   });
-  const auto take_over = [&](std::uint32_t half_edge, std::uint32_t w) {
-    const std::uint32_t e = mesh_.edge(half_edge);
+  give_ring(a, b, [&](std::uint32_t e, std::uint32_t w) {
     std::uint32_t& note = notes_[notes_.place(w)];
     if (note == 0) note = e + 1;
-    const std::uint32_t kept = note - 1;
-    if (kept == e) {
-      mesh_.edges[e].ends = {b, w};
-      return;
-    }
-    mesh_.edge(half_edge) = kept;
-    mesh_.edges[kept].add(half_edge);
-    leave_edge(e, half_edge);
-  };
-  mesh_.for_ring(a, [&](std::uint32_t c) {
-    const CornerView at_c = mesh_.view(c);
-    take_over(c, at_c.next);
-    take_over(CollapseMesh::previous(c), at_c.previous);
-    mesh_.faces[c / 3].vertex[c % 3] = b;
+    return note - 1;
   });
-  mesh_.join_rings(a, b);
 }
 
 /// After a collapse that pinches the surface two triangles can lie on each other. Back to back they

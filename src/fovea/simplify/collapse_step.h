@@ -43,6 +43,8 @@ class CollapseStepper {
 
  private:
   void note_twins(std::uint32_t a, std::uint32_t b);
+  template <class KeptFor>
+  void give_ring(std::uint32_t a, std::uint32_t b, KeptFor&& kept_for);
   void merge_edges(std::uint32_t a, std::uint32_t b);
   void merge_twins(std::uint32_t a, std::uint32_t b);
   void drop_coincident_faces(std::uint32_t b);
