@@ -8,7 +8,7 @@ namespace fovea {
 /// Allocates from the beginning of a cache line on, so that what is as long as a line lies on one.
 template <class T>
 struct LineAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the name that containers ask for
   static constexpr std::align_val_t kLine{64};
 
   LineAllocator() = default;
