@@ -55,7 +55,7 @@ TEST(Team, PassesExceptionsOnAndGoesOn) {
 }
 
 TEST(Team, WorksOnAllItsThreads) {
-  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP();
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "needs a machine with two threads";
   Context context;
   context.threads = 2;
   Team team(context);
