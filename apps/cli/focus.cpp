@@ -111,7 +111,7 @@ class FocusVerb : public Verb {
     const std::vector<VertexField> shares =
         session.phase("attention", input_, [&] { return look(input.model, session); });
     Made made = is_level()
-                    ? session.phase("level", input_, [&] { return level(input.model, shares, session); })
+                    ? session.phase("level", input_, [&] { return level(input, shares, session); })
                     : Made{marked(input.model, shares), {}, {}};
     session.phase("write", [&] { write(input.model, made, shares, before, session); });
     session.print_summary(summary_ + fmt::format("time     {}\n", session.spent_text()));
@@ -235,15 +235,19 @@ class FocusVerb : public Verb {
     return shares;
   }
 
-  /// The coarsest mesh that keeps to what is allowed.
-  Made level(const Model& model, const std::vector<VertexField>& shares, Session& session) {
-    const double diagonal = bounds(model).diagonal();
+  MultiTessellation make_levels(const Model& model, Context& context) const {
     SimplifyOptions options = simplify_options_;
     options.metric = Metric::quadric;
     options.placement = Placement::half_edge;  // needs fewer other steps: detail falls off more steeply
     options.triangles = 0;
-    MultiTessellation levels =
-        make_multi_tessellation(model, simplify(model, options, {}, session.context).record, session.context);
+    return make_multi_tessellation(model, simplify(model, options, {}, context).record, context);
+  }
+
+  /// The coarsest mesh that keeps to what is allowed.
+  Made level(const Input& input, const std::vector<VertexField>& shares, Session& session) {
+    const Model& model = input.model;
+    const double diagonal = bounds(model).diagonal();
+    const MultiTessellation levels = input.levels ? *input.levels : make_levels(model, session.context);
     const double error = error_ ? *error_ * diagonal : error_abs_.value_or(diagonal);
     std::vector<float> allowed;
     for (const VertexField& share : shares) {

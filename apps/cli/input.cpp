@@ -1,16 +1,36 @@
 #include "input.h"
 
+#include "fovea/lod/levels_file.h"
 #include "report.h"
 
 namespace fovea::cli {
 
+namespace {
+
+/// The levels of a file; if it has none, the model goes to `input` alone.
+std::optional<LeveledModel> read_leveled(Input& input, const ReadOptions& options, Context& context) {
+  const std::string& path = input.path;
+  const LevelsPlace place = find_levels(path);
+  if (place == LevelsPlace::file)
+    return read_levels(read_file(path, options.max_file_bytes), path, {}, options, context);
+  input.model = read_model(path, options, context);
+  if (place == LevelsPlace::none) return std::nullopt;
+  return about(path, [&] { return levels_inside(input.model, {}, options, context); });
+}
+
+}  // namespace
+
 Input read_input(Session& session, const std::string& path, const ReadOptions& options) {
   return session.phase("read", [&] {
-    Model model = read_model(path, options, session.context);
-    if (counts(model).triangles == 0)
+    Input input{path, {}, {}, {}};
+    if (std::optional<LeveledModel> leveled = read_leveled(input, options, session.context)) {
+      input.model = std::move(leveled->original);
+      input.levels = std::move(leveled->levels);
+    }
+    if (counts(input.model).triangles == 0)
       session.context.report("no-triangles", "the model has no triangles", path);
-    const FileBytes bytes = measure_input(path, model);
-    return Input{path, std::move(model), bytes};
+    input.bytes = measure_input(path, input.model);
+    return input;
   });
 }
 

@@ -8,8 +8,10 @@
 
 #include "field_source.h"
 #include "fovea/base/text.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/read.h"
 #include "fovea/io/write.h"
+#include "fovea/lod/levels_file.h"
 #include "fovea/lod/lod_chain.h"
 #include "fovea/lod/lod_chain_files.h"
 #include "fovea/lod/lod_chain_gltf.h"
@@ -28,6 +30,10 @@ namespace fs = std::filesystem;
 
 enum class LevelTextures { follow, keep };
 enum class Rebake { off, on };
+/// What is written. The first leaves it to the extension of the output.
+enum class LodsOutput { by_extension, chain, levels };
+/// Of the coarsest of all levels, if nobody says how many triangles it is to have.
+constexpr double kCoarsestRatio = 0.01;
 
 class Lods : public Verb {
  public:
@@ -43,8 +49,10 @@ class Lods : public Verb {
         "that is "
         "known of them; or a .glb, which gets all levels as MSFT_lod has them. Level 0 is the original. A "
         "level "
-        "that would be no smaller, or no farther from the original, than a neighbour is left out. Exit code "
-        "8 says "
+        "that would be no smaller, or no farther from the original, than a neighbour is left out. A .fovea "
+        "gets every step from the coarsest level to the original instead, each with its error, so that any "
+        "level can be read off it, also one that is finer in places; so does a .glb with --as levels, in "
+        "which other programs see the coarsest. All verbs read both as the original. Exit code 8 says "
         "that fewer triangles were asked for than could be reached; the output is written all the same.",
         {{"fovea lods helmet.glb -o lods", "Four levels, each with half the triangles of the one before."},
          {"fovea lods helmet.glb -o helmet-lods.glb --triangles 8000,2000,500",
@@ -56,12 +64,20 @@ class Lods : public Verb {
          {"fovea lods tree.glb -o lods --distances 20,50,200 --fov 70 --height 1440 --pixel-error 2",
           "The same by distances, on another screen."},
          {"fovea lods fox.glb -o lods --name 'LOD{i}_{name}' --textures keep",
-          "Names as Unreal has them; every level has all texels."}}};
+          "Names as Unreal has them; every level has all texels."},
+        {"fovea lods bunny.ply -o bunny.fovea --triangles 500",
+         "All levels down to 500 triangles, for \"fovea focus bunny.fovea\" and programs."}}};
   }
 
   void declare(Arguments& arguments) override {
     arguments.add(model_argument(input_));
     arguments.add("Levels", level_options());
+    arguments.add("Levels",
+                  {{"as",
+                    "A chain of some levels, or all levels with the steps between them, for which "
+                    "--triangles is the coarsest (1 % by itself). By itself as the extension says: .fovea "
+                    "has all levels, folders and .glb have chains.",
+                    choice(as_, {"extension", "chain", "levels"}), ""}});
     arguments.add("Simplification", simplify_options());
     arguments.add(
         "Simplification",
@@ -84,6 +100,8 @@ class Lods : public Verb {
     Importance importance;
     if (!importance_.empty())
       importance = session.phase("importance", [&] { return load_importance(input); });
+    if (has_all_levels()) return write_levels(session, input, importance);
+    if (input.levels) options_.record = &input.levels->record;
     if (rebake_ == Rebake::on) options_.textures.rebake.original = &input.model;
     LodChain chain = session.phase(
         "levels", input_, [&] { return make_lod_chain(input.model, options_, importance, session.context); });
@@ -114,10 +132,12 @@ class Lods : public Verb {
     list.push_back({"distances",
                     "The same as distances from the eye to the sphere's centre, rising, in scene units.",
                     &distances_, "lengths"});
-    const OptionList screen = describe(options_.screen);
+    const OptionList screen = describe_screen();
     list.insert(list.end(), screen.begin(), screen.end());
     return list;
   }
+
+  OptionList describe_screen() { return describe(options_.screen); }
 
   OptionList simplify_options() {
     static const std::set<std::string> kTaken{"placement",     "uv-weight",       "normal-weight",
@@ -162,14 +182,14 @@ class Lods : public Verb {
 
   OptionList output_options() {
     return {
-        {"output", "A folder for a file for each level, or a .glb for all of them.", &output_,
+        {"output", "A folder for a file for each level, or a .glb or .fovea for all of them.", &output_,
          "folder or file"},
         {"name", "Name of a level's file: {name} is the model's, {i} the level's number.", &name_, "pattern"},
         {"vanish", "The coverage below which not even the last level is shown; 0 always shows it.", &vanish_,
          "", 0, 1}};
   }
 
-  void declare_needs(Arguments& arguments) const {
+  void declare_needs(Arguments& arguments) {
     need_format(arguments, write_options_);
     arguments.need({{"levels", "ratio"}, "no --triangles, --coverage and --distances", [this] {
                       return triangles_.empty() && coverages_.empty() && distances_.empty();
@@ -179,9 +199,26 @@ class Lods : public Verb {
                     }});
     arguments.need({{"name"}, "a folder as output", [this] { return !is_one_file(); }});
     arguments.need({{"vanish"}, "a .glb as output", [this] { return is_one_file(); }});
+    std::vector<std::string> of_chains{"levels",     "ratio",  "coverage",     "distances", "textures", "rebake",
+                                       "warp",       "vanish", "texture-format", "texture-psnr"};
+    for (const Option& option : describe_screen()) of_chains.push_back(option.name);
+    for (const Option& option : error_options()) of_chains.push_back(option.name);
+    arguments.need({of_chains, "a chain, not all levels", [this] { return !has_all_levels(); }});
+    std::vector<std::string> of_steps{"importance"};
+    for (const Option& option : simplify_options()) of_steps.push_back(option.name);
+    arguments.need({of_steps, "a model without levels",
+                    [this] { return find_levels(input_) == LevelsPlace::none; },
+                    "this file has its steps already"});
   }
 
-  bool is_one_file() const { return lower_extension(output_) == ".glb" && !fs::is_directory(output_); }
+  bool is_one_file() const {
+    const std::string extension = lower_extension(output_);
+    return (extension == ".glb" || extension == ".fovea") && !fs::is_directory(output_);
+  }
+  bool has_all_levels() const {
+    if (as_ != LodsOutput::by_extension) return as_ == LodsOutput::levels;
+    return lower_extension(output_) == ".fovea";
+  }
   std::string stem() const { return fs::path(input_).stem().string(); }
   std::string sidecar_name() const { return stem() + "_lods.json"; }
 
@@ -189,9 +226,13 @@ class Lods : public Verb {
     read_lists();
     options_.textures_follow = textures_ == LevelTextures::follow;
     check_input(input_);
-    const std::string example = is_one_file() ? "lods.glb" : "lods";
+    const std::string example = has_all_levels() ? "model.fovea" : is_one_file() ? "lods.glb" : "lods";
     check_output(output_, example, {input_}, write_options_.force, [&](const fs::path& path) {
-      if (is_one_file()) {
+      if (has_all_levels() || lower_extension(path) == ".fovea") {
+        check_extension(path, "levels", has_all_levels() ? std::vector<std::string>{".fovea", ".glb"}
+                                                         : std::vector<std::string>{".glb"});
+        check_place(path, write_options_.force);
+      } else if (is_one_file()) {
         fovea::check_output(path, write_options_);
       } else {
         check_folder(path);
@@ -236,6 +277,59 @@ class Lods : public Verb {
     const std::size_t listed =
         std::max({options_.triangles.size(), options_.coverages.size(), options_.distances.size()});
     return listed > 0 ? listed + 1 : static_cast<std::size_t>(options_.levels);
+  }
+
+  /// All levels of the input, with the steps between them.
+  int write_levels(Session& session, const Input& input, const Importance& importance) {
+    if (options_.triangles.size() > 1)
+      throw Error(ErrorKind::usage, "all levels have one that is the coarsest", "--triangles",
+                  "give one number");
+    bool reached = true;
+    const LeveledModel leveled = session.phase("levels", input_, [&] {
+      return LeveledModel{input.model, input.levels ? *input.levels
+                                                    : make_levels(input.model, importance, session.context, reached)};
+    });
+    std::vector<std::string> written{output_};
+    session.phase("encode", [&] {
+      if (lower_extension(output_) == ".fovea") {
+        const OutputFile file{"", encode_levels(leveled, write_options_, session.context)};
+        write_files(output_, {&file, 1}, write_options_.force);
+      } else {
+        WriteOptions options = write_options_;
+        options.quantize = false;  // levels are, and the coarsest is one of them
+        write_model(with_levels(leveled, write_options_, session.context), output_, options, session.context);
+      }
+    });
+    const std::uint64_t fewest = counts(coarsest(leveled)).triangles, bytes = fs::file_size(output_);
+    const std::size_t steps = leveled.levels.step_count();
+    session.report["outputs"] = Json::array({file_json(output_)});
+    session.report["result"] = {{"triangles", leveled.levels.triangles},
+                                {"triangles_coarsest", fewest},
+                                {"steps", steps},
+                                {"bytes", bytes},
+                                {"reached", reached}};
+    session.print_summary(fmt::format(
+        "{} -> {}\nlevels   {} to {} triangles, {} steps\nsize     {}, {:.1f} bytes per triangle\ntime     {}\n",
+        printable(input_), printable(output_), count_text(fewest), count_text(leveled.levels.triangles),
+        count_text(steps), bytes_text(bytes),
+        static_cast<double>(bytes) / static_cast<double>(std::max<std::uint64_t>(1, leveled.levels.triangles)),
+        session.spent_text()));
+    return target_code(session, reached, allow_miss_);
+  }
+
+  MultiTessellation make_levels(const Model& model, const Importance& importance, Context& context,
+                                bool& reached) const {
+    SimplifyOptions options = options_.simplify;
+    if (options.metric == Metric::automatic) options.metric = Metric::quadric;
+    if (options_.triangles.empty()) {
+      options.ratio = kCoarsestRatio;
+    } else {
+      options.triangles = options_.triangles.front();
+    }
+    SimplifyResult result = simplify(model, options, importance, context);
+    if (result.stop == StopReason::cancelled) throw Error(ErrorKind::cancelled, "cancelled");
+    reached = result.triangles_after <= result.triangles_target;
+    return make_multi_tessellation(model, std::move(result.record), context);
   }
 
   Importance load_importance(const Input& input) const {
@@ -296,6 +390,7 @@ class Lods : public Verb {
   std::string name_ = "{name}_LOD{i}";
   double vanish_ = 0;
   bool allow_miss_ = false;
+  LodsOutput as_ = LodsOutput::by_extension;
   LevelTextures textures_ = LevelTextures::follow;
   Rebake rebake_ = Rebake::off;
   LodChainOptions options_;

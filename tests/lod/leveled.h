@@ -2,17 +2,14 @@
 
 #include <utility>
 
+#include "fovea/lod/levels_file.h"
 #include "fovea/lod/multi_tessellation.h"
 #include "fovea/simplify/simplify.h"
 #include "support/by_quadrics.h"
 
 namespace fovea::test {
 
-/// A model with its levels.
-struct Leveled {
-  Model original;
-  MultiTessellation levels;
-};
+using Leveled = LeveledModel;
 
 /// Down to so many triangles, or as few as there can be.
 inline Leveled leveled(Model model, std::int64_t triangles, int threads = 2,

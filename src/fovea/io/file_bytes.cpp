@@ -218,6 +218,9 @@ FileBytes measure(const fs::path& path, const Model& model, std::span<const fs::
     result.kinds = meter.bytes();
     result.kinds.images += images;
     result.files += meter.external_buffer_bytes() + images;
+  } else if (format == FileFormat::fovea) {
+    for (const EncodedImage& image : model.images) result.kinds.images += image.bytes.size();
+    result.kinds.geometry = size - std::min<std::uint64_t>(size, result.kinds.images);
   } else {
     result.kinds.geometry = size;
     written.empty() ? add_files_read(path, model, result) : add_files_written(written, result);

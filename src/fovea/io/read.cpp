@@ -83,6 +83,8 @@ Model read_as(FileFormat format, std::span<const std::byte> bytes, const fs::pat
     case FileFormat::obj: return read_obj(bytes, folder, place, options, context);
     case FileFormat::ply: return read_ply(bytes, folder, place, options, context);
     case FileFormat::stl: return read_stl(bytes, place, options, context);
+    case FileFormat::fovea:
+      throw Error(ErrorKind::unsupported, "this is a file of levels", place, "read_levels reads it");
     case FileFormat::other: break;
   }
   if (is_off(bytes)) return read_off(bytes, place, options, context);
@@ -116,6 +118,7 @@ const char* to_string(FileFormat format) {
     case FileFormat::obj: return "obj";
     case FileFormat::ply: return "ply";
     case FileFormat::stl: return "stl";
+    case FileFormat::fovea: return "fovea";
     case FileFormat::other: break;
   }
   return "other";
@@ -125,6 +128,7 @@ FileFormat detect_format(std::span<const std::byte> head, const fs::path& path) 
   const std::string_view text = as_text(head);
   const FileFormat by_name = format_of_extension(path);
   if (text.starts_with("glTF")) return FileFormat::glb;
+  if (text.starts_with(kLevelsMagic)) return FileFormat::fovea;
   if (is_ply(text)) return FileFormat::ply;
   if (is_stl(head)) return FileFormat::stl;
   if (is_json(text) && (by_name == FileFormat::gltf || text.find("\"asset\"") != text.npos)) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "fovea/base/context.h"
 #include "fovea/base/options.h"
@@ -25,8 +26,12 @@ struct ReadOptions {
 };
 OptionList describe(ReadOptions& options);
 
+/// What files of levels (lod/levels_file.h) begin with: a byte that is no letter, so that no text is taken for
+/// them, and an end of line that breaks where line ends are changed.
+inline constexpr std::string_view kLevelsMagic = "\x89" "FOVEA\r\n";
+
 /// File formats that Fovea tells apart, by content first and extension second.
-enum class FileFormat { gltf, glb, obj, ply, stl, other };
+enum class FileFormat { gltf, glb, obj, ply, stl, fovea, other };
 const char* to_string(FileFormat format);
 
 /// Looks at the first bytes, then at the extension; `other` is left to the general importer.

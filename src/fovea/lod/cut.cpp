@@ -65,6 +65,18 @@ Cut cut_at_triangles(const MultiTessellation& levels, std::uint64_t triangles) {
   return cut;
 }
 
+Cut cut_leaving_meshes(const Model& original, const MultiTessellation& levels) {
+  std::vector<std::size_t> left;
+  for (const Mesh& mesh : original.meshes) left.push_back(mesh.surface.face_count());
+  Cut cut(levels.step_count(), 1);
+  for (std::size_t s = 0; s < cut.size(); ++s) {
+    std::size_t& faces = left[levels.record.steps[s].mesh];
+    cut[s] = faces > levels.removed_by(s) && has_all(cut, levels.needs_of(s));
+    if (cut[s] != 0) faces -= levels.removed_by(s);
+  }
+  return cut;
+}
+
 Cut cut_at_error(const MultiTessellation& levels, double error) {
   return take_where(levels, [&](std::size_t s) { return levels.error[s] <= error; });
 }

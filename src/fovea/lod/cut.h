@@ -18,6 +18,9 @@ std::uint64_t triangles_of(const MultiTessellation& levels, const Cut& cut);
 /// The first steps, until no more than so many triangles are left, or there are no more steps.
 Cut cut_at_triangles(const MultiTessellation& levels, std::uint64_t triangles);
 
+/// All steps but those that take the last triangles of a mesh.
+Cut cut_leaving_meshes(const Model& original, const MultiTessellation& levels);
+
 /// As many steps as there are whose error is at most this, in scene units.
 Cut cut_at_error(const MultiTessellation& levels, double error);
 

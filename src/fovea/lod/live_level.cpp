@@ -110,6 +110,12 @@ void LiveLevel::go_to(const Cut& cut) {
   cut_ = cut;
 }
 
+void LiveLevel::set(std::size_t s, bool taken) {
+  if ((cut_[s] != 0) == taken) return;
+  change(s, taken);
+  cut_[s] = taken;
+}
+
 /// Takes a step, or undoes it.
 void LiveLevel::change(std::size_t s, bool taken) {
   const CollapseRecord& record = levels_.record;

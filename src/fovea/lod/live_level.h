@@ -19,6 +19,9 @@ class LiveLevel {
 
   /// The cut must be closed, as all are that lod/cut.h makes. O(#steps), and the one-rings of what differs.
   void go_to(const Cut& cut);
+  /// Takes step s, if it is not taken and all is that it needs, or undoes it, if it is and nothing is that
+  /// needs it: one step of the way to another cut. O(1) for usual meshes.
+  void set(std::size_t s, bool taken);
   const Cut& cut() const { return cut_; }
   std::uint64_t triangle_count() const { return triangle_count_; }
 

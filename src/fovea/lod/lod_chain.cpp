@@ -120,12 +120,22 @@ class ChainMaker {
     std::uint64_t total = 0;
     for (const Mesh& mesh : model_.meshes) total += mesh.surface.face_count();
     targets_ = lod_targets(options_, total);
-    const SimplifyOptions options = simplify_options(options_, targets_, total);
-    SimplifyResult result = simplify(model_, options, importance, context_);
+    SimplifyResult result = options_.record != nullptr
+                                ? known(*options_.record)
+                                : simplify(model_, simplify_options(options_, targets_, total), importance,
+                                           context_);
     if (result.stop == StopReason::cancelled) throw Error(ErrorKind::cancelled, "cancelled");
     chain_.reached = targets_.empty() || result.triangles_after <= targets_.back();
     chain_.metric = result.metric;
     chain_.metric_from = result.metric_from;
+    return result;
+  }
+
+  static SimplifyResult known(const CollapseRecord& record) {
+    SimplifyResult result;
+    result.record = record;
+    result.triangles_before = record.triangles_before;
+    result.triangles_after = record.triangles_after(record.steps.size());
     return result;
   }
 

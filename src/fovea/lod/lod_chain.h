@@ -25,6 +25,7 @@ struct LodChainOptions {
   std::vector<double> distances;        ///< or at which distances, rising. Each level is as simple as a
   LodScreen screen;                     ///< measured error of `pixel_error` pixels there allows.
   SimplifyOptions simplify;             ///< How; its targets do not count, `per_mesh` must be off.
+  const CollapseRecord* record = nullptr;  ///< Steps that are known; nothing is simplified then.
   bool textures_follow = true;  ///< Images get as many texels as the level has pixels where it comes in.
   ShrinkOptions textures;       ///< How; its `scales` and `max_bytes` do not count.
   std::int64_t key_poses = 4;   ///< Poses in which errors are measured, besides rest; 0 to 64.

@@ -68,4 +68,9 @@ struct MultiTessellation {
 /// another model, Error(cancelled).
 MultiTessellation make_multi_tessellation(const Model& original, CollapseRecord record, Context& context);
 
+/// Of a record whose errors [#steps] are known. O(#F). Throws as above, and Error(usage) for another number of
+/// errors.
+MultiTessellation make_multi_tessellation(const Model& original, CollapseRecord record,
+                                          std::vector<float> error, Context& context);
+
 }  // namespace fovea
