@@ -110,9 +110,8 @@ class FocusVerb : public Verb {
     need_triangles(input);
     const std::vector<VertexField> shares =
         session.phase("attention", input_, [&] { return look(input.model, session); });
-    Made made = is_level()
-                    ? session.phase("level", input_, [&] { return level(input, shares, session); })
-                    : Made{marked(input.model, shares), {}, {}};
+    Made made = is_level() ? session.phase("level", input_, [&] { return level(input, shares, session); })
+                           : Made{marked(input.model, shares), {}, {}};
     session.phase("write", [&] { write(input.model, made, shares, before, session); });
     session.print_summary(summary_ + fmt::format("time     {}\n", session.spent_text()));
     return is_level() ? target_code(session, made.reached, allow_miss_) : 0;

@@ -21,7 +21,8 @@ struct Input {
   std::optional<MultiTessellation> levels;  ///< If the file has levels of it.
 };
 
-/// Reads a model as the phase "read": of a file with levels the finest; one without triangles is told as a note.
+/// Reads a model as the phase "read": of a file with levels the finest; one without triangles is told as a
+/// note.
 Input read_input(Session& session, const std::string& path, const ReadOptions& options);
 
 /// Error(unsupported) if the model shows no triangles: for verbs that have nothing to do then.

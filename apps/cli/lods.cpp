@@ -65,8 +65,8 @@ class Lods : public Verb {
           "The same by distances, on another screen."},
          {"fovea lods fox.glb -o lods --name 'LOD{i}_{name}' --textures keep",
           "Names as Unreal has them; every level has all texels."},
-        {"fovea lods bunny.ply -o bunny.fovea --triangles 500",
-         "All levels down to 500 triangles, for \"fovea focus bunny.fovea\" and programs."}}};
+         {"fovea lods bunny.ply -o bunny.fovea --triangles 500",
+          "All levels down to 500 triangles, for \"fovea focus bunny.fovea\" and programs."}}};
   }
 
   void declare(Arguments& arguments) override {
@@ -199,8 +199,8 @@ class Lods : public Verb {
                     }});
     arguments.need({{"name"}, "a folder as output", [this] { return !is_one_file(); }});
     arguments.need({{"vanish"}, "a .glb as output", [this] { return is_one_file(); }});
-    std::vector<std::string> of_chains{"levels",     "ratio",  "coverage",     "distances", "textures", "rebake",
-                                       "warp",       "vanish", "texture-format", "texture-psnr"};
+    std::vector<std::string> of_chains{"levels", "ratio", "coverage", "distances",      "textures",
+                                       "rebake", "warp",  "vanish",   "texture-format", "texture-psnr"};
     for (const Option& option : describe_screen()) of_chains.push_back(option.name);
     for (const Option& option : error_options()) of_chains.push_back(option.name);
     arguments.need({of_chains, "a chain, not all levels", [this] { return !has_all_levels(); }});
@@ -229,8 +229,9 @@ class Lods : public Verb {
     const std::string example = has_all_levels() ? "model.fovea" : is_one_file() ? "lods.glb" : "lods";
     check_output(output_, example, {input_}, write_options_.force, [&](const fs::path& path) {
       if (has_all_levels() || lower_extension(path) == ".fovea") {
-        check_extension(path, "levels", has_all_levels() ? std::vector<std::string>{".fovea", ".glb"}
-                                                         : std::vector<std::string>{".glb"});
+        check_extension(
+            path, "levels",
+            has_all_levels() ? std::vector<std::string>{".fovea", ".glb"} : std::vector<std::string>{".glb"});
         check_place(path, write_options_.force);
       } else if (is_one_file()) {
         fovea::check_output(path, write_options_);
@@ -286,8 +287,9 @@ class Lods : public Verb {
                   "give one number");
     bool reached = true;
     const LeveledModel leveled = session.phase("levels", input_, [&] {
-      return LeveledModel{input.model, input.levels ? *input.levels
-                                                    : make_levels(input.model, importance, session.context, reached)};
+      return LeveledModel{input.model, input.levels
+                                           ? *input.levels
+                                           : make_levels(input.model, importance, session.context, reached)};
     });
     std::vector<std::string> written{output_};
     session.phase("encode", [&] {
@@ -301,19 +303,24 @@ class Lods : public Verb {
       }
     });
     const std::uint64_t fewest = counts(coarsest(leveled)).triangles, bytes = fs::file_size(output_);
+    const std::uint64_t images = counts(leveled.original).image_bytes;
     const std::size_t steps = leveled.levels.step_count();
     session.report["outputs"] = Json::array({file_json(output_)});
     session.report["result"] = {{"triangles", leveled.levels.triangles},
                                 {"triangles_coarsest", fewest},
                                 {"steps", steps},
                                 {"bytes", bytes},
+                                {"image_bytes", images},
                                 {"reached", reached}};
-    session.print_summary(fmt::format(
-        "{} -> {}\nlevels   {} to {} triangles, {} steps\nsize     {}, {:.1f} bytes per triangle\ntime     {}\n",
-        printable(input_), printable(output_), count_text(fewest), count_text(leveled.levels.triangles),
-        count_text(steps), bytes_text(bytes),
-        static_cast<double>(bytes) / static_cast<double>(std::max<std::uint64_t>(1, leveled.levels.triangles)),
-        session.spent_text()));
+    session.print_summary(
+        fmt::format("{} -> {}\nlevels   {} to {} triangles, {}\n"
+                    "size     {}, of which images {}; the rest is {:.1f} bytes per triangle\ntime     {}\n",
+                    printable(input_), printable(output_), count_text(fewest),
+                    count_text(leveled.levels.triangles), plural(steps, "step", "steps"), bytes_text(bytes),
+                    bytes_text(images),
+                    static_cast<double>(bytes - std::min(bytes, images)) /
+                        static_cast<double>(std::max<std::uint64_t>(1, leveled.levels.triangles)),
+                    session.spent_text()));
     return target_code(session, reached, allow_miss_);
   }
 

@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include "fovea/io/read.h"
 #include "run_command.h"
@@ -226,6 +227,50 @@ TEST_F(LodsVerb, ASkinnedModelsPosesStayWithinTheStatedError) {
       EXPECT_LE(error, 1.02 * levels[i]["error"]["max_abs"].get<double>()) << "level " << i << " at " << time;
     }
   }
+}
+
+TEST_F(LodsVerb, AFileOfAllLevelsIsReadAsTheOriginal) {
+  const Outcome made = lods({grid_, "-o", out("grid.fovea"), "--triangles", "40", "--json"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const json result = json::parse(made.out)["result"];
+  EXPECT_EQ(result["triangles"], 1152);
+  EXPECT_LE(result["triangles_coarsest"], 40);
+  EXPECT_EQ(result["bytes"], fs::file_size(out("grid.fovea")));
+  const json info = json::parse(fovea({"info", out("grid.fovea"), "--json"}).out);
+  EXPECT_EQ(info["inputs"][0]["format"], "fovea");
+  EXPECT_EQ(info["totals"]["triangles"], 1152);
+  // Levels of a chain and of an eye's focus are read off it; nothing is simplified that could be told how.
+  const Outcome chain =
+      lods({out("grid.fovea"), "-o", out("lods"), "--triangles", "300,100", "--no-pictures"});
+  EXPECT_EQ(chain.code, 0) << chain.err;
+  EXPECT_LE(counts(model(out("lods/grid_LOD2.glb"))).triangles, 100u);
+  const Outcome focus =
+      fovea({"focus", out("grid.fovea"), "-o", out("focus.glb"), "--at", "128,128", "--triangles", "600"});
+  EXPECT_EQ(focus.code, 0) << focus.err;
+  const Outcome told = lods({out("grid.fovea"), "-o", out("x"), "--metric", "image"});
+  EXPECT_EQ(told.code, 2);
+  EXPECT_THAT(told.err, HasSubstr("--metric needs a model without levels"));
+}
+
+TEST_F(LodsVerb, AGlbWithAllLevelsShowsTheCoarsest) {
+  const Outcome made =
+      lods({grid_, "-o", out("all.glb"), "--as", "levels", "--triangles", "40", "--quantize"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_LE(counts(model(out("all.glb"))).triangles, 40u) << "to who does not know the extension";
+  const json info = json::parse(fovea({"info", out("all.glb"), "--json"}).out);
+  EXPECT_EQ(info["totals"]["triangles"], 1152);
+}
+
+TEST_F(LodsVerb, RefusesWhatAllLevelsHaveNoUseFor) {
+  const std::vector<std::string> before = folder_.names();
+  EXPECT_EQ(lods({grid_, "-o", out("a.fovea"), "--triangles", "300,100"}).code, 2);
+  EXPECT_EQ(lods({grid_, "-o", out("a.fovea"), "--levels", "3"}).code, 2);
+  EXPECT_EQ(lods({grid_, "-o", out("a.fovea"), "--as", "chain"}).code, 2);
+  EXPECT_EQ(lods({grid_, "-o", out("lods"), "--as", "levels"}).code, 2);
+  EXPECT_EQ(folder_.names(), before);
+  std::ofstream(out("cut.fovea"), std::ios::binary) << "\x89"
+                                                       "FOVEA\r\n\1";
+  EXPECT_EQ(fovea({"info", out("cut.fovea")}).code, 4);
 }
 
 }  // namespace

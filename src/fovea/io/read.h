@@ -26,9 +26,11 @@ struct ReadOptions {
 };
 OptionList describe(ReadOptions& options);
 
-/// What files of levels (lod/levels_file.h) begin with: a byte that is no letter, so that no text is taken for
-/// them, and an end of line that breaks where line ends are changed.
-inline constexpr std::string_view kLevelsMagic = "\x89" "FOVEA\r\n";
+/// What files of levels (lod/levels_file.h) begin with: a byte that is no letter, so that no text is taken
+/// for them, and an end of line that breaks where line ends are changed.
+inline constexpr std::string_view kLevelsMagic =
+    "\x89"
+    "FOVEA\r\n";
 
 /// File formats that Fovea tells apart, by content first and extension second.
 enum class FileFormat { gltf, glb, obj, ply, stl, fovea, other };

@@ -35,7 +35,8 @@ class GrowingMesh {
   void neighbors(VertexId v, std::vector<VertexId>& out) const;
   /// Values that a layer has at a vertex, each once, in the order of the fan.
   void values_at(VertexId v, std::size_t layer, std::vector<ValueId>& out) const;
-  /// A corner at v of a triangle in which w comes so many corners, 1 or 2, after it; kInvalid if there is none.
+  /// A corner at v of a triangle in which w comes so many corners, 1 or 2, after it; kInvalid if there is
+  /// none.
   std::uint32_t corner_beside(VertexId v, VertexId w, std::uint32_t after) const;
 
  private:

@@ -58,7 +58,8 @@ class HeadCode {
     storage.normalized = normalized != 0;
     if constexpr (!Io::kWrites) {
       const auto type = static_cast<int>(storage.type);
-      if (type < static_cast<int>(ComponentType::i8) || type == 5124) damaged_levels("there is no such storage");
+      if (type < static_cast<int>(ComponentType::i8) || type == 5124)
+        damaged_levels("there is no such storage");
     }
   }
 

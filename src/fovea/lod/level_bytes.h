@@ -16,7 +16,8 @@ namespace fovea {
 using Bytes = std::vector<std::byte>;
 
 [[noreturn]] inline void damaged_levels(const std::string& what) {
-  throw Error(ErrorKind::format, "the levels are damaged: " + what, {}, "make them again with \"fovea lods\"");
+  throw Error(ErrorKind::format, "the levels are damaged: " + what, {},
+              "make them again with \"fovea lods\"");
 }
 
 /// Writes numbers one after the other, little-endian.
@@ -26,7 +27,8 @@ class ByteWriter {
 
   template <class T>
   void number(T x) {
-    for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::byte>((x >> (8 * i)) & 0xFF));
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      bytes.push_back(static_cast<std::byte>((x >> (8 * i)) & 0xFF));
   }
   void real(double x) { number(std::bit_cast<std::uint64_t>(x)); }
   /// Seven bits a byte, the lowest first; the eighth says that more follow (LEB128).

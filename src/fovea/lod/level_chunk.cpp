@@ -17,7 +17,9 @@ constexpr int kEffort = 9;
 /// Deflate makes nothing smaller than by this factor (RFC 1951: 258 bytes by two bits at best).
 constexpr std::uint64_t kMostExpansion = 1040;
 
-const Bytef* pointer(std::span<const std::byte> bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
+const Bytef* pointer(std::span<const std::byte> bytes) {
+  return reinterpret_cast<const Bytef*>(bytes.data());
+}
 
 std::span<const std::byte> magic() { return std::as_bytes(std::span(kLevelsMagic)); }
 
@@ -42,8 +44,9 @@ void read_head(ByteReader& in) {
     throw Error(ErrorKind::format, "this is no file of levels", {}, "\"fovea lods\" makes them");
   const auto version = in.number<std::uint16_t>();
   if (version != kVersion)
-    throw Error(ErrorKind::unsupported, fmt::format("the levels are of version {}, known is {}", version, kVersion),
-                {}, "make them again, or take a newer Fovea");
+    throw Error(ErrorKind::unsupported,
+                fmt::format("the levels are of version {}, known is {}", version, kVersion), {},
+                "make them again, or take a newer Fovea");
 }
 
 void write_chunk(ByteWriter& out, ChunkType type, std::span<const std::byte> content) {
@@ -100,7 +103,8 @@ std::vector<Bytes> unpack(std::span<const std::byte> packed, std::size_t count, 
       stream.assign(from.begin(), from.end());
       continue;
     }
-    if (size < from.size() || size > kMostExpansion * from.size()) damaged_levels("a stream has no such size");
+    if (size < from.size() || size > kMostExpansion * from.size())
+      damaged_levels("a stream has no such size");
     stream.resize(size);
     auto found = static_cast<uLongf>(size);
     if (uncompress(reinterpret_cast<Bytef*>(stream.data()), &found, pointer(from),

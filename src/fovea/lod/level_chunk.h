@@ -37,8 +37,8 @@ std::optional<Chunk> read_chunk(ByteReader& in);
 
 /// A content of several streams, each compressed by itself.
 Bytes pack(std::span<const Bytes> streams);
-/// Throws Error(format) unless there are so many streams and nothing else, Error(limit) if they take more than
-/// `budget`, from which they are taken.
+/// Throws Error(format) unless there are so many streams and nothing else, Error(limit) if they take more
+/// than `budget`, from which they are taken.
 std::vector<Bytes> unpack(std::span<const std::byte> packed, std::size_t count, std::uint64_t& budget);
 
 }  // namespace fovea

@@ -31,14 +31,27 @@ enum class Symbol {
   part,
   values,  ///< Whether the values of a triangle are as expected.
   value,   ///< One that is not.
-  count_,
 };
 
 /// Numbers of 32 bits of one meaning: their bytes go to four streams, the lowest first.
-enum class Wide { kept, error, error_rel, position, position_morph, uv, normal, tangent, color, joints, weights, custom, value_morph, count_ };
+enum class Wide {
+  kept,
+  error,
+  error_rel,
+  position,
+  position_morph,
+  uv,
+  normal,
+  tangent,
+  color,
+  joints,
+  weights,
+  custom,
+  value_morph,
+};
 
-inline constexpr std::size_t kSymbolStreams = static_cast<std::size_t>(Symbol::count_);
-inline constexpr std::size_t kWideStreams = static_cast<std::size_t>(Wide::count_);
+inline constexpr std::size_t kSymbolStreams = static_cast<std::size_t>(Symbol::value) + 1;
+inline constexpr std::size_t kWideStreams = static_cast<std::size_t>(Wide::value_morph) + 1;
 inline constexpr std::size_t kStreams = kSymbolStreams + 4 * kWideStreams;
 
 inline Wide wide_of(Semantic semantic) {

@@ -26,19 +26,20 @@ struct LeveledModel {
 /// The model at its coarsest: all steps taken, but no mesh goes altogether.
 Model coarsest(const LeveledModel& leveled);
 
-/// All levels as one file (.fovea): the coarsest as a GLB, with all images and animations, then the steps back
-/// to the original, so that any beginning of the file is a level. docs/levels.md describes it byte by byte.
-/// Nothing is lost: the original comes back with all its numbers, but other numbers of its vertices, values
-/// and triangles, without those that no triangle uses, and with errors of levels up to 0.8 % larger. What
-/// meshes of integers (KHR_mesh_quantization) cannot hold is rounded to them.
+/// All levels as one file (.fovea): the coarsest as a GLB, with all images and animations, then the steps
+/// back to the original, so that any beginning of the file is a level. docs/levels.md describes it byte by
+/// byte. Nothing is lost: the original comes back with all its numbers, but other numbers of its vertices,
+/// values and triangles, without those that no triangle uses, and with errors of levels up to 0.8 % larger.
+/// What meshes of integers (KHR_mesh_quantization) cannot hold is rounded to them.
 ///
 /// With `options.quantize` numbers are rounded to so many bits first, for files of about a half the size, and
 /// errors grow by what rounding can move; `compression` compresses the GLB. Throws Error(unsupported) for a
 /// model with levels already (MSFT_lod), Error(cancelled), and as `write_gltf` does.
-std::vector<std::byte> encode_levels(const LeveledModel& leveled, const WriteOptions& options, Context& context);
+std::vector<std::byte> encode_levels(const LeveledModel& leveled, const WriteOptions& options,
+                                     Context& context);
 
-/// The coarsest level with all others inside, for a file that any program can open: the extension FOVEA_levels
-/// refers to the same bytes.
+/// The coarsest level with all others inside, for a file that any program can open: the extension
+/// FOVEA_levels refers to the same bytes.
 Model with_levels(const LeveledModel& leveled, const WriteOptions& options, Context& context);
 
 /// How much of a file of levels is read.

@@ -40,7 +40,8 @@ class RecordMaker {
     std::size_t joins = joins_.size(), writes = writes_.size(), floats = floats_.size();
     for (std::size_t i = steps_.size(); i-- > 0;) {
       const Part& part = steps_[i];
-      for (std::size_t f = 0; f < part.faces; ++f) record.removed_faces.push_back(FaceId{part.first_face + f});
+      for (std::size_t f = 0; f < part.faces; ++f)
+        record.removed_faces.push_back(FaceId{part.first_face + f});
       append(record.joins, joins_, part.joins, std::exchange(joins, part.joins));
       append(record.writes, writes_, part.writes, std::exchange(writes, part.writes));
       append(record.floats, floats_, part.floats, std::exchange(floats, part.floats));
@@ -122,8 +123,7 @@ class LevelsReader {
     }
     std::vector<float> error;
     CollapseRecord record = record_.finish(triangles_, error);
-    leveled.levels =
-        make_multi_tessellation(leveled.original, std::move(record), std::move(error), context_);
+    leveled.levels = make_multi_tessellation(leveled.original, std::move(record), std::move(error), context_);
     return leveled;
   }
 
@@ -155,7 +155,8 @@ class LevelsReader {
       ++steps_;
     }
     if (!io.at_end()) damaged_levels("something follows the steps");
-    context_.advance_or_throw("read", static_cast<double>(steps_) / std::max(1.0, static_cast<double>(head_.steps)));
+    context_.advance_or_throw("read",
+                              static_cast<double>(steps_) / std::max(1.0, static_cast<double>(head_.steps)));
   }
 
   /// Points and lines are the scene's.

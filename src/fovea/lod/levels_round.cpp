@@ -28,7 +28,8 @@ class Rounding {
   /// Between two neighbours.
   double step() const {
     if (step_ > 0 || !rounds()) return step_;
-    return static_cast<double>(decode_component(1, storage_)) - static_cast<double>(decode_component(0, storage_));
+    return static_cast<double>(decode_component(1, storage_)) -
+           static_cast<double>(decode_component(0, storage_));
   }
   void round(float& x) const {
     if (step_ > 0) {
@@ -93,7 +94,8 @@ MeshRounding rounding_of(const TriMesh& mesh, const WriteOptions& options) {
   }
   for (const AttributeLayer& layer : mesh.layers) {
     rounding.value.push_back(rounding_of(layer, options));
-    rounding.value_morph.push_back(layer.storage.type == ComponentType::f32 ? rounding.value.back() : Rounding());
+    rounding.value_morph.push_back(layer.storage.type == ComponentType::f32 ? rounding.value.back()
+                                                                            : Rounding());
   }
   return rounding;
 }

@@ -120,10 +120,10 @@ class ChainMaker {
     std::uint64_t total = 0;
     for (const Mesh& mesh : model_.meshes) total += mesh.surface.face_count();
     targets_ = lod_targets(options_, total);
-    SimplifyResult result = options_.record != nullptr
-                                ? known(*options_.record)
-                                : simplify(model_, simplify_options(options_, targets_, total), importance,
-                                           context_);
+    SimplifyResult result =
+        options_.record != nullptr
+            ? known(*options_.record)
+            : simplify(model_, simplify_options(options_, targets_, total), importance, context_);
     if (result.stop == StopReason::cancelled) throw Error(ErrorKind::cancelled, "cancelled");
     chain_.reached = targets_.empty() || result.triangles_after <= targets_.back();
     chain_.metric = result.metric;

@@ -18,13 +18,13 @@ namespace fovea {
 /// Which levels a chain has, besides the original, which is level 0. The first of `triangles`, `coverages`
 /// and `distances` that is not empty says; `levels` and `ratio` if all are.
 struct LodChainOptions {
-  std::int64_t levels = 4;              ///< With the original,
-  double ratio = 0.5;                   ///< each with this part of the triangles of the one before.
-  std::vector<std::int64_t> triangles;  ///< Of levels 1, 2, ..., falling.
-  std::vector<double> coverages;        ///< Where levels 1, 2, ... come in (lod_chain_screen.h), falling:
-  std::vector<double> distances;        ///< or at which distances, rising. Each level is as simple as a
-  LodScreen screen;                     ///< measured error of `pixel_error` pixels there allows.
-  SimplifyOptions simplify;             ///< How; its targets do not count, `per_mesh` must be off.
+  std::int64_t levels = 4;                 ///< With the original,
+  double ratio = 0.5;                      ///< each with this part of the triangles of the one before.
+  std::vector<std::int64_t> triangles;     ///< Of levels 1, 2, ..., falling.
+  std::vector<double> coverages;           ///< Where levels 1, 2, ... come in (lod_chain_screen.h), falling:
+  std::vector<double> distances;           ///< or at which distances, rising. Each level is as simple as a
+  LodScreen screen;                        ///< measured error of `pixel_error` pixels there allows.
+  SimplifyOptions simplify;                ///< How; its targets do not count, `per_mesh` must be off.
   const CollapseRecord* record = nullptr;  ///< Steps that are known; nothing is simplified then.
   bool textures_follow = true;  ///< Images get as many texels as the level has pixels where it comes in.
   ShrinkOptions textures;       ///< How; its `scales` and `max_bytes` do not count.

@@ -68,8 +68,8 @@ struct MultiTessellation {
 /// another model, Error(cancelled).
 MultiTessellation make_multi_tessellation(const Model& original, CollapseRecord record, Context& context);
 
-/// Of a record whose errors [#steps] are known. O(#F). Throws as above, and Error(usage) for another number of
-/// errors.
+/// Of a record whose errors [#steps] are known. O(#F). Throws as above, and Error(usage) for another number
+/// of errors.
 MultiTessellation make_multi_tessellation(const Model& original, CollapseRecord record,
                                           std::vector<float> error, Context& context);
 

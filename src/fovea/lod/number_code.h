@@ -41,8 +41,8 @@ class NumberCode {
   double scale_;
 };
 
-/// The sizes of integers that `numbers` are multiples of: finds a scale for NumberCode that fits all that were
-/// added.
+/// The sizes of integers that `numbers` are multiples of: finds a scale for NumberCode that fits all that
+/// were added.
 class ScaleFinder {
  public:
   /// `unit`: the number that integers of this kind stand for fractions of (255 for normalised bytes); 0 if
@@ -57,9 +57,9 @@ class ScaleFinder {
 
  private:
   int unit_;
-  bool of_unit_ = true;             // all are whole numbers of 1 / unit
-  int lowest_ = 1000;               // the lowest bit that is set in any,
-  int highest_ = -1000;             // and the highest: exponents of 2
+  bool of_unit_ = true;  // all are whole numbers of 1 / unit
+  int lowest_ = 1000;    // the lowest bit that is set in any,
+  int highest_ = -1000;  // and the highest: exponents of 2
   bool any_ = false;
 };
 

@@ -13,8 +13,8 @@
 #include "fovea/simplify/record.h"
 
 // Private to lod. What a file of levels says of a model and of each step, for writing and for reading: every
-// function is made for an `Io` that has the functions of StreamWriter or of StreamReader. Where `Io::kWrites`,
-// it also answers what is to be written, see levels_write.cpp.
+// function is made for an `Io` that has the functions of StreamWriter or of StreamReader. Where
+// `Io::kWrites`, it also answers what is to be written, see levels_write.cpp.
 
 namespace fovea {
 
@@ -35,12 +35,12 @@ struct Split {
   bool moved = false, morphs = false;  ///< Whether `kept` has another position, other morphs afterwards.
   bool kept_is_new = false;            ///< No triangle had it before.
   std::uint32_t mesh = 0;
-  VertexId kept, removed;       ///< None if a component comes.
-  std::uint32_t faces = 0;      ///< That come.
-  float error = 0;              ///< MultiTessellation::error,
-  float error_rel = 0;          ///< and CollapseStep::error_rel. Both rounded up to eight bits.
-  Vec3f coarse_position;        ///< Of `kept`,
-  std::vector<ValueJoin> joins;   // values that come, with those that they came from
+  VertexId kept, removed;          ///< None if a component comes.
+  std::uint32_t faces = 0;         ///< That come.
+  float error = 0;                 ///< MultiTessellation::error,
+  float error_rel = 0;             ///< and CollapseStep::error_rel. Both rounded up to eight bits.
+  Vec3f coarse_position;           ///< Of `kept`,
+  std::vector<ValueJoin> joins;    // values that come, with those that they came from
   std::vector<ValueWrite> writes;  // what is rewritten, with
   std::vector<float> floats;       // the numbers that it had
 };
@@ -94,7 +94,7 @@ class SplitCode {
               std::min(s.faces, kMany) << 4;
     }
     io_.symbol(Symbol::flags, flags);
-    std::uint32_t more = s.faces - kMany;
+    std::uint32_t more = Io::kWrites ? s.faces - kMany : 0;
     if (flags >> 4 == kMany) io_.symbol(Symbol::faces, more);
     if (model_.meshes.size() > 1) io_.symbol(Symbol::mesh, s.mesh);
     std::uint32_t error = rounded_up(s.error), error_rel = rounded_up(s.error_rel);
@@ -193,7 +193,8 @@ class SplitCode {
       return true;
     };
     std::uint32_t group = 0;
-    if constexpr (Io::kWrites) group = (count == 0 ? 0 : count == 1 && follows() ? 1 : count + 1) << 1 | rewritten;
+    if constexpr (Io::kWrites)
+      group = (count == 0 ? 0 : count == 1 && follows() ? 1 : count + 1) << 1 | rewritten;
     io_.symbol(Symbol::groups, group);
     rewritten = group & 1;
     group >>= 1;
@@ -454,8 +455,8 @@ class SplitCode {
                           coarse_.end());
   }
 
-  void code_numbers(const NewValue& value, std::vector<float>& numbers, int target, Wide kind, NumberCode code,
-                    std::size_t width, std::size_t offset) {
+  void code_numbers(const NewValue& value, std::vector<float>& numbers, int target, Wide kind,
+                    NumberCode code, std::size_t width, std::size_t offset) {
     for (std::size_t i = 0; i < width; ++i) {
       float& x = numbers[value.id.index() * width + i];
       std::int32_t reference = code.code(0);

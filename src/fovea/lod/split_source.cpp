@@ -164,7 +164,8 @@ Split SplitSource::undo(std::size_t s) {
   const TriMesh& coarse = model_.meshes[mesh_].surface;
   split.moved = !is_same(coarse.positions[split.kept.index()], fine_position(split.kept));
   for (std::size_t t = 0; t < coarse.target_count(); ++t) {
-    if (!is_same(coarse.position_morphs[t][split.kept.index()], fine_morph(t, split.kept))) split.morphs = true;
+    if (!is_same(coarse.position_morphs[t][split.kept.index()], fine_morph(t, split.kept)))
+      split.morphs = true;
   }
   return split;
 }
@@ -228,13 +229,12 @@ std::array<VertexId, 3> SplitSource::face(std::uint32_t j, VertexId kept, Vertex
   face_ = faces_[j];
   corner_ = turn_ = 0;
   std::array<VertexId, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = names().vertex[fine().triangles[face_.index()][k].index()];
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = names().vertex[fine().triangles[face_.index()][k].index()];
   for (const VertexId first : {kept, removed}) {
     const auto at = std::ranges::find(corners, first);
     if (!first.valid() || at == corners.end()) continue;
     turn_ = static_cast<std::size_t>(at - corners.begin());
-    std::ranges::rotate(corners, at);
+    std::rotate(corners.begin(), at, corners.end());
     break;
   }
   return corners;

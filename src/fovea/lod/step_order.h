@@ -13,8 +13,8 @@
 namespace fovea {
 
 /// Goes through the steps of a record once and writes down what each needs and makes: `first_vertex`,
-/// `triangles`, `needs` and `corners` of a MultiTessellation. Keeps the triangles as the steps have left them,
-/// those of all meshes numbered through.
+/// `triangles`, `needs` and `corners` of a MultiTessellation. Keeps the triangles as the steps have left
+/// them, those of all meshes numbered through.
 class StepOrder {
  public:
   /// Both must outlive this. Throws Error(usage) if the record is of another model, Error(limit).
