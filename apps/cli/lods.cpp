@@ -312,15 +312,14 @@ class Lods : public Verb {
                                 {"bytes", bytes},
                                 {"image_bytes", images},
                                 {"reached", reached}};
-    session.print_summary(
-        fmt::format("{} -> {}\nlevels   {} to {} triangles, {}\n"
-                    "size     {}, of which images {}; the rest is {:.1f} bytes per triangle\ntime     {}\n",
-                    printable(input_), printable(output_), count_text(fewest),
-                    count_text(leveled.levels.triangles), plural(steps, "step", "steps"), bytes_text(bytes),
-                    bytes_text(images),
-                    static_cast<double>(bytes - std::min(bytes, images)) /
-                        static_cast<double>(std::max<std::uint64_t>(1, leveled.levels.triangles)),
-                    session.spent_text()));
+    session.print_summary(fmt::format(
+        "{} -> {}\nlevels   {} to {} triangles, {}\n"
+        "size     {}, of which images {}; the rest is {:.1f} bytes per triangle\ntime     {}\n",
+        printable(input_), printable(output_), count_text(fewest), count_text(leveled.levels.triangles),
+        plural(steps, "step", "steps"), bytes_text(bytes), bytes_text(images),
+        static_cast<double>(bytes - std::min(bytes, images)) /
+            static_cast<double>(std::max<std::uint64_t>(1, leveled.levels.triangles)),
+        session.spent_text()));
     return target_code(session, reached, allow_miss_);
   }
 

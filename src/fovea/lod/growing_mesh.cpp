@@ -1,6 +1,7 @@
 #include "fovea/lod/growing_mesh.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fovea {
 
@@ -52,12 +53,14 @@ void GrowingMesh::split_fan(VertexId from, VertexId to, std::span<const std::uin
   old.resize(left);
 }
 
-void GrowingMesh::neighbors(VertexId v, std::vector<VertexId>& out) const {
+void GrowingMesh::neighbors(VertexId v, std::uint32_t stamp, std::vector<std::uint32_t>& seen,
+                            std::vector<VertexId>& out) const {
   out.clear();
+  if (seen.size() < surface.vertex_count()) seen.resize(surface.vertex_count());
   for (const std::uint32_t c : fan(v)) {
     const auto& t = surface.triangles[c / 3];
     for (const VertexId w : {t[(c % 3 + 1) % 3], t[(c % 3 + 2) % 3]}) {
-      if (std::find(out.begin(), out.end(), w) == out.end()) out.push_back(w);
+      if (std::exchange(seen[w.index()], stamp) != stamp) out.push_back(w);
     }
   }
 }

@@ -31,8 +31,10 @@ class GrowingMesh {
   /// Gives those corners of a fan to another vertex for which `side` [#fan] is not 0.
   void split_fan(VertexId from, VertexId to, std::span<const std::uint8_t> side);
 
-  /// Vertices around one, each once, in the order of the fan.
-  void neighbors(VertexId v, std::vector<VertexId>& out) const;
+  /// Vertices around one, each once, in the order of the fan: those for which `seen` is not `stamp`, which it
+  /// becomes.
+  void neighbors(VertexId v, std::uint32_t stamp, std::vector<std::uint32_t>& seen,
+                 std::vector<VertexId>& out) const;
   /// Values that a layer has at a vertex, each once, in the order of the fan.
   void values_at(VertexId v, std::size_t layer, std::vector<ValueId>& out) const;
   /// A corner at v of a triangle in which w comes so many corners, 1 or 2, after it; kInvalid if there is

@@ -39,6 +39,7 @@ class HeadCode {
     number(count);
     if constexpr (!Io::kWrites) {
       if (count > io_.left(Symbol::head)) damaged_levels("a count is too large");
+      io_.charge(count * sizeof(typename List::value_type));
       list.resize(count);
     }
   }
@@ -104,7 +105,7 @@ class HeadCode {
   }
 
   void code_layer(AttributeLayer& layer, std::vector<bool>& morphed) {
-    constexpr std::uint32_t kMostWidth = 1 << 10;
+    constexpr std::uint32_t kMostWidth = 16;
     choice(layer.semantic, static_cast<std::uint32_t>(Semantic::custom));
     auto set = static_cast<std::uint32_t>(layer.set), width = static_cast<std::uint32_t>(layer.width);
     number(set);

@@ -78,6 +78,7 @@ class StreamWriter {
         zigzag(static_cast<std::uint32_t>(code.code(x)) - static_cast<std::uint32_t>(reference));
     wide(kind, difference);
   }
+  void charge(std::size_t) {}
   void real(double& x) { head().real(x); }
   void text(std::string& s) { head().text(s); }
 
@@ -108,7 +109,7 @@ class StreamReader {
   static constexpr bool kWrites = false;
 
   StreamReader(std::span<const std::byte> packed, std::uint64_t& budget)
-      : streams_(unpack(packed, kStreams, budget)) {
+      : budget_(budget), streams_(unpack(packed, kStreams, budget)) {
     for (std::size_t i = 0; i < kSymbolStreams; ++i) symbols_.emplace_back(streams_[i]);
   }
 
@@ -131,6 +132,11 @@ class StreamReader {
     x = code.number(static_cast<std::int32_t>(static_cast<std::uint32_t>(reference) + unzigzag(difference)));
     if (!std::isfinite(x)) damaged_levels("a number is not finite");
   }
+  /// Takes memory from the budget before it is used. Throws Error(limit) if there is not so much.
+  void charge(std::size_t bytes) {
+    if (bytes > budget_) throw Error(ErrorKind::limit, "the levels take more memory than is allowed");
+    budget_ -= bytes;
+  }
   void real(double& x) { x = head().real(); }
   void text(std::string& s) { s = head().text(); }
   /// Bytes of symbols that are left: of anything that takes one there cannot be more.
@@ -151,6 +157,7 @@ class StreamReader {
  private:
   ByteReader& head() { return symbols_[static_cast<std::size_t>(Symbol::head)]; }
 
+  std::uint64_t& budget_;
   std::vector<Bytes> streams_;
   std::vector<ByteReader> symbols_;
   std::array<std::size_t, kWideStreams> wide_at_{};

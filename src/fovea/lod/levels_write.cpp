@@ -88,8 +88,11 @@ Model with_levels(const LeveledModel& leveled, const WriteOptions& options, Cont
   write_head(out);
   write_levels(out, written, context);
   Model model = coarsest(written);
-  nlohmann::ordered_json json =
-      model.json.empty() ? nlohmann::ordered_json::object() : nlohmann::ordered_json::parse(model.json);
+  nlohmann::ordered_json json = model.json.empty()
+                                    ? nlohmann::ordered_json::object()
+                                    : nlohmann::ordered_json::parse(model.json, nullptr, false);
+  if (!json.is_object()) throw Error(ErrorKind::usage, "the model's JSON is no object");
+  if (json.contains("extensions") && !json["extensions"].is_object()) json.erase("extensions");
   json["extensions"][kLevelsExtension] = {{"bufferView", model.carried_buffer_views.size()}};
   model.json = json.dump();
   model.carried_buffer_views.push_back(std::move(out.bytes));

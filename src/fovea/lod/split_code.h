@@ -59,6 +59,7 @@ class SplitCode {
   void code(Split& split) {
     split_ = &split;
     code_flags();
+    io_.charge(sizeof(Split));
     mesh_ = &model_.meshes[split.mesh];
     codes_ = &model_.codes[split.mesh];
     first_vertex_ = mesh_->surface.vertex_count();
@@ -75,6 +76,8 @@ class SplitCode {
 
  private:
   using Corners = std::array<VertexId, 3>;
+  /// Of a triangle with its corners in fans, without values, and of a vertex with its fan.
+  static constexpr std::size_t kFaceBytes = 32, kVertexBytes = 48;
 
   /// A value whose numbers follow.
   struct NewValue {
@@ -121,7 +124,7 @@ class SplitCode {
   void code_fan() {
     Split& s = *split_;
     if (s.kept_is_new) {
-      s.kept = mesh_->add_vertex();
+      s.kept = add_vertex();
       if constexpr (Io::kWrites) io_.name_kept(s.kept);
     } else {
       io_.wide(Wide::kept, s.kept.value);
@@ -129,7 +132,7 @@ class SplitCode {
         if (s.kept.index() >= mesh_->surface.vertex_count()) damaged_levels("a vertex is not there");
       }
     }
-    s.removed = mesh_->add_vertex();
+    s.removed = add_vertex();
     if constexpr (Io::kWrites) io_.name_removed(s.removed);
     const auto fan = mesh_->fan(s.kept);
     fan_.assign(fan.begin(), fan.end());
@@ -141,6 +144,17 @@ class SplitCode {
     for (std::uint32_t l = 0; l < mesh_->surface.layers.size(); ++l) code_groups(l);
     mesh_->split_fan(s.kept, s.removed, side_);
     find_around();
+  }
+
+  VertexId add_vertex() {
+    io_.charge(kVertexBytes + mesh_->surface.target_count() * sizeof(Vec3f));
+    return mesh_->add_vertex();
+  }
+
+  ValueId add_value(std::uint32_t l) {
+    const AttributeLayer& layer = mesh_->surface.layers[l];
+    io_.charge(static_cast<std::size_t>(layer.width) * (1 + layer.morphs.size()) * sizeof(float));
+    return mesh_->add_value(l);
   }
 
   void code_sides() {
@@ -173,7 +187,7 @@ class SplitCode {
       const std::size_t first = values_.size() + rewritten;
       if (rewritten != 0) values_.push_back({l, group, group, true, false});
       for (std::uint32_t n = 0; n < count; ++n) {
-        const ValueId id = mesh_->add_value(l);
+        const ValueId id = add_value(l);
         if constexpr (Io::kWrites) io_.name_digit(l, n + 1, id);
         values_.push_back({l, id, group, false, rewritten != 0});
         split_->joins.push_back({l, id, group});
@@ -213,12 +227,16 @@ class SplitCode {
 
   /// The vertices around both ends, those that both have first: new triangles are likely there.
   void find_around() {
-    mesh_->neighbors(split_->kept, around_);
-    mesh_->neighbors(split_->removed, neighbors_);
-    const auto is_both = [&](VertexId v) { return std::ranges::find(neighbors_, v) != neighbors_.end(); };
-    std::stable_partition(around_.begin(), around_.end(), is_both);
-    for (const VertexId v : neighbors_) {
-      if (std::ranges::find(around_, v) == around_.end()) around_.push_back(v);
+    ++stamp_;
+    mesh_->neighbors(split_->kept, stamp_, seen_at_kept_, at_kept_);
+    mesh_->neighbors(split_->removed, stamp_, seen_at_removed_, at_removed_);
+    for (const bool both : {true, false}) {
+      for (const VertexId v : at_kept_) {
+        if ((seen_at_removed_[v.index()] == stamp_) == both) around_.push_back(v);
+      }
+    }
+    for (const VertexId v : at_removed_) {
+      if (seen_at_kept_[v.index()] != stamp_) around_.push_back(v);
     }
   }
 
@@ -234,6 +252,7 @@ class SplitCode {
     const std::uint32_t part = code_part(beside);
     face_values_.clear();
     for (std::uint32_t l = 0; l < mesh_->surface.layers.size(); ++l) code_face_values(l, t, beside);
+    io_.charge(kFaceBytes + face_values_.size() * sizeof(ValueId));
     const FaceId f = mesh_->add_face(t, part, face_values_);
     if constexpr (Io::kWrites) io_.name_face(f);
   }
@@ -281,7 +300,7 @@ class SplitCode {
     }
     io_.symbol(Symbol::vertex, code);
     if (code == kNew) {
-      v = mesh_->add_vertex();
+      v = add_vertex();
       if (a.valid()) around_.push_back(v);
       if constexpr (Io::kWrites) io_.name_vertex(v);
     }
@@ -354,7 +373,7 @@ class SplitCode {
         value[k] = groups_[codes[k] - kListed];
       }
       if (codes[k] == kNew) {
-        value[k] = mesh_->add_value(l);
+        value[k] = add_value(l);
         if constexpr (Io::kWrites) io_.name_value(l, k, value[k]);
         values_.push_back({l, value[k], groups_.empty() ? ValueId{} : groups_.front(), false, false});
       }
@@ -483,7 +502,9 @@ class SplitCode {
   std::vector<std::uint32_t> fan_, digits_;
   std::vector<std::uint8_t> side_;
   std::vector<std::size_t> members_;
-  std::vector<VertexId> around_, neighbors_;
+  std::vector<VertexId> around_, at_kept_, at_removed_;
+  std::uint32_t stamp_ = 0;  // of what was seen last
+  std::vector<std::uint32_t> seen_at_kept_, seen_at_removed_;
   std::vector<ValueId> groups_, face_values_;
   std::vector<NewValue> values_;
   std::vector<float> coarse_;  // numbers of values that are rewritten, before
