@@ -206,9 +206,13 @@ class Lods : public Verb {
     arguments.need({of_chains, "a chain, not all levels", [this] { return !has_all_levels(); }});
     std::vector<std::string> of_steps{"importance"};
     for (const Option& option : simplify_options()) of_steps.push_back(option.name);
-    arguments.need({of_steps, "a model without levels",
-                    [this] { return find_levels(input_) == LevelsPlace::none; },
-                    "this file has its steps already"});
+    const auto has_no_steps = [this] { return find_levels(input_) == LevelsPlace::none; };
+    const std::string hint = "this file has its steps already";
+    arguments.need({of_steps, "a model without levels", has_no_steps, hint});
+    arguments.need({{"triangles"},
+                    "a chain, or a model without levels",
+                    [this, has_no_steps] { return !has_all_levels() || has_no_steps(); },
+                    hint});
   }
 
   bool is_one_file() const {

@@ -247,6 +247,7 @@ TEST_F(LodsVerb, AFileOfAllLevelsIsReadAsTheOriginal) {
   const Outcome focus =
       fovea({"focus", out("grid.fovea"), "-o", out("focus.glb"), "--at", "128,128", "--triangles", "600"});
   EXPECT_EQ(focus.code, 0) << focus.err;
+  EXPECT_EQ(lods({out("grid.fovea"), "-o", out("y.fovea"), "--triangles", "90"}).code, 2);
   const Outcome told = lods({out("grid.fovea"), "-o", out("x"), "--metric", "image"});
   EXPECT_EQ(told.code, 2);
   EXPECT_THAT(told.err, HasSubstr("--metric needs a model without levels"));

@@ -14,7 +14,7 @@
 
 // Private to lod. What a file of levels says of a model and of each step, for writing and for reading: every
 // function is made for an `Io` that has the functions of StreamWriter or of StreamReader. Where
-// `Io::kWrites`, it also answers what is to be written, see levels_write.cpp.
+// `Io::kWrites`, it also answers what is to be written, see split_source.h.
 
 namespace fovea {
 
