@@ -93,15 +93,15 @@ void expect_same_levels(const Leveled& model, const std::string& name) {
   const VertexHierarchy hierarchy = make_vertex_hierarchy(model.original, model.levels, context);
   Contraction contraction(hierarchy);
   LiveLevel live(model.original, model.levels);
-  LevelIndices level;
   for (std::uint64_t seed = 0; seed < 14; ++seed) {
     const Cut cut = seed == 12   ? Cut(model.levels.step_count(), 0)
                     : seed == 13 ? Cut(model.levels.step_count(), 1)
                                  : random_cut(model.levels, seed);
     live.go_to(cut);
     const StepBits taken = bits_of(cut);
-    contraction.begin(taken, level);
+    contraction.begin(taken);
     EXPECT_TRUE(contraction.advance(contraction.total_work()));
+    const LevelIndices& level = contraction.level();
     EXPECT_EQ(level.triangle_count(), live.triangle_count()) << name;
     for (std::size_t p = 0; p < hierarchy.parts.size(); ++p) {
       const LevelPart& part = hierarchy.parts[p];
@@ -135,13 +135,14 @@ TEST(Contraction, InPiecesIsTheSame) {
   const VertexHierarchy hierarchy = make_vertex_hierarchy(model.original, model.levels, context);
   const StepBits taken = bits_of(random_cut(model.levels, 3));
   Contraction contraction(hierarchy);
-  LevelIndices whole, pieces;
-  contraction.begin(taken, whole);
+  contraction.begin(taken);
   contraction.advance(contraction.total_work());
-  contraction.begin(taken, pieces);
+  const LevelIndices whole = contraction.level();
+  contraction.begin(taken);
   std::size_t count = 1;
   while (!contraction.advance(17)) ++count;
   EXPECT_EQ(count, (contraction.total_work() + 16) / 17);
+  const LevelIndices& pieces = contraction.level();
   for (std::size_t p = 0; p < hierarchy.parts.size(); ++p)
     EXPECT_TRUE(std::ranges::equal(pieces.of_part(hierarchy, p), whole.of_part(hierarchy, p)));
 }

@@ -10,13 +10,16 @@ std::uint64_t LevelIndices::triangle_count() const {
 }
 
 Contraction::Contraction(const VertexHierarchy& hierarchy)
-    : hierarchy_(hierarchy), target_(hierarchy.node_count()) {}
+    : hierarchy_(hierarchy), target_(hierarchy.node_count()) {
+  for (LevelIndices& level : levels_) {
+    level.indices.resize(3 * hierarchy.face_count());
+    level.triangles.assign(hierarchy.parts.size(), 0);
+  }
+}
 
-void Contraction::begin(const StepBits& taken, LevelIndices& out) {
+void Contraction::begin(const StepBits& taken) {
   taken_ = &taken;
-  out_ = &out;
-  out.indices.resize(3 * hierarchy_.face_count());
-  out.triangles.assign(hierarchy_.parts.size(), 0);
+  std::fill(levels_[1 - shown_].triangles.begin(), levels_[1 - shown_].triangles.end(), 0);
   done_ = part_ = 0;
 }
 
@@ -26,7 +29,9 @@ bool Contraction::advance(std::size_t work) {
   if (done_ < nodes) find_targets(done_, std::min(end, nodes));
   if (end > nodes) write_faces(std::max(done_, nodes) - nodes, end - nodes);
   done_ = end;
-  return done_ == total;
+  if (done_ < total) return false;
+  shown_ = 1 - shown_;
+  return true;
 }
 
 /// Of the nodes from the last but `begin` to the last but `end`.
@@ -39,17 +44,18 @@ void Contraction::find_targets(std::size_t begin, std::size_t end) {
 }
 
 void Contraction::write_faces(std::size_t begin, std::size_t end) {
+  LevelIndices& level = levels_[1 - shown_];
   while (begin < end) {
     const LevelPart& part = hierarchy_.parts[part_];
     const std::size_t part_end = std::min<std::size_t>(end, part.end_face);
-    std::uint32_t* const first = out_->indices.data() + 3 * std::size_t{part.first_face};
-    std::uint32_t* to = first + 3 * std::size_t{out_->triangles[part_]};
+    std::uint32_t* const first = level.indices.data() + 3 * std::size_t{part.first_face};
+    std::uint32_t* to = first + 3 * std::size_t{level.triangles[part_]};
     for (; begin < part_end; ++begin) {
       const std::uint32_t step = hierarchy_.removed_by[begin];
       if (step != kInvalid && taken_->has(step)) continue;
       for (const std::uint32_t node : hierarchy_.corners[begin]) *to++ = target_[node];
     }
-    out_->triangles[part_] = static_cast<std::uint32_t>(to - first) / 3;
+    level.triangles[part_] = static_cast<std::uint32_t>(to - first) / 3;
     if (begin == part.end_face) ++part_;
   }
 }

@@ -1,30 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "fovea/lod/step_bits.h"
 #include "fovea/lod/vertex_hierarchy.h"
 
 namespace fovea {
-
-/// A set of steps, a bit each: step s is bit s % 32 of word s / 32. At least one bit more than there are
-/// steps, 0.
-class StepBits {
- public:
-  explicit StepBits(std::size_t step_count = 0) : words_(step_count / 32 + 1, 0) {}
-  bool has(std::uint32_t s) const { return (words_[s / 32] >> s % 32 & 1u) != 0; }
-  void set(std::size_t s, bool value) {
-    const std::uint32_t bit = 1u << s % 32;
-    words_[s / 32] = value ? words_[s / 32] | bit : words_[s / 32] & ~bit;
-  }
-  std::span<const std::uint32_t> words() const { return words_; }
-  friend bool operator==(const StepBits&, const StepBits&) = default;
-
- private:
-  std::vector<std::uint32_t> words_;
-};
 
 /// The triangles of a level as indices into the vertices of their mesh.
 struct LevelIndices {
@@ -39,21 +24,34 @@ struct LevelIndices {
   std::uint64_t triangle_count() const;
 };
 
-/// Contracts triangles of an original to those of a level.
+/// Makes a level's triangles from those of the original: a little at a time, if that is wanted.
+class LevelContraction {
+ public:
+  virtual ~LevelContraction() = default;
+  /// Begins a level; `taken` must stay as it is until `advance` has said that it is done.
+  virtual void begin(const StepBits& taken) = 0;
+  /// Does so much of the work that there is; whether all is done. Allocates nothing.
+  virtual bool advance(std::size_t work) = 0;
+  virtual std::size_t total_work() const = 0;
+};
+
+/// On the processor.
 ///
 /// Each triangle is there until the step that removes it is taken; each corner goes to the first vertex of
 /// its chain that no taken step replaces. Targets are found once for all nodes, from the coarsest down, so
-/// that no chain is followed twice. Triangles keep their order.
-class Contraction {
+/// that no chain is followed twice. Triangles keep their order. One thread: some 5 ns per node and triangle
+/// that is looked at, and as much for each corner that is left.
+class Contraction : public LevelContraction {
  public:
   /// `hierarchy` must outlive this.
   explicit Contraction(const VertexHierarchy& hierarchy);
 
-  /// Begins a level; `taken` must stay as it is until `advance` has said that it is done.
-  void begin(const StepBits& taken, LevelIndices& out);
-  /// Does so much of it, in nodes and triangles looked at; whether it is done. No allocation.
-  bool advance(std::size_t work);
-  std::size_t total_work() const { return hierarchy_.node_count() + hierarchy_.face_count(); }
+  void begin(const StepBits& taken) override;
+  bool advance(std::size_t work) override;
+  std::size_t total_work() const override { return hierarchy_.node_count() + hierarchy_.face_count(); }
+
+  /// The last level that was done; nothing before the first. Stays until the next is done.
+  const LevelIndices& level() const { return levels_[shown_]; }
 
  private:
   void find_targets(std::size_t begin, std::size_t end);
@@ -61,8 +59,10 @@ class Contraction {
 
   const VertexHierarchy& hierarchy_;
   std::vector<std::uint32_t> target_;  // [#nodes], vertices
+  std::array<LevelIndices, 2> levels_;
+  std::size_t shown_ = 0;
+  // Of the level in hand:
   const StepBits* taken_ = nullptr;
-  LevelIndices* out_ = nullptr;
   std::size_t done_ = 0, part_ = 0;
 };
 

@@ -63,7 +63,8 @@ class HierarchyBuilder {
   bool has_changed(std::size_t s, const Wedge& wedge) const;
   std::uint32_t add_node(std::size_t m, VertexId v, const std::vector<ValueId>& values);
   std::uint32_t node_at(std::size_t m, std::size_t corner, std::vector<Wedge>& wedges);
-  void replace(std::uint32_t& node, std::uint32_t by, std::size_t s);
+  void replace(std::uint32_t node, std::uint32_t by, std::size_t s);
+  const Wedge* most_alike(const std::vector<ValueId>& values, const std::vector<Wedge>& wedges) const;
   std::vector<ValueId> values_at(std::size_t m, std::size_t corner) const;
 
   std::span<const ValueWrite> writes(std::size_t s) const {
@@ -168,8 +169,35 @@ void HierarchyBuilder::take(std::size_t s) {
   live_.set(s, true);
   at_kept.insert(at_kept.end(), at_removed.begin(), at_removed.end());
   at_removed = {};
-  std::erase_if(at_kept, [&](std::uint32_t c) { return !live_.is_there(step.mesh, FaceId{c / 3}); });
-  for (const std::uint32_t c : at_kept) replace(node_of(step.mesh, c), node_at(step.mesh, c, wedges), s);
+  const auto is_there = [&](std::uint32_t c) { return live_.is_there(step.mesh, FaceId{c / 3}); };
+  for (const std::uint32_t c : at_kept) {
+    if (!is_there(c)) continue;
+    const std::uint32_t now = node_at(step.mesh, c, wedges);
+    replace(node_of(step.mesh, c), now, s);
+    node_of(step.mesh, c) = now;
+  }
+  // Those of triangles that are gone follow: without the step that took them they would be here.
+  for (const std::uint32_t c : at_kept) {
+    const std::uint32_t node = node_of(step.mesh, c);
+    if (is_there(c) || nodes_[node].parent != kInvalid) continue;
+    if (const Wedge* wedge = most_alike(values_at(step.mesh, c), wedges)) replace(node, wedge->node, s);
+  }
+  std::erase_if(at_kept, [&](std::uint32_t c) { return !is_there(c); });
+}
+
+/// The wedge in use with most of the values; null without any.
+const HierarchyBuilder::Wedge* HierarchyBuilder::most_alike(const std::vector<ValueId>& values,
+                                                            const std::vector<Wedge>& wedges) const {
+  const Wedge* best = nullptr;
+  std::size_t most = 0;
+  for (const Wedge& wedge : wedges) {
+    if (nodes_[wedge.node].parent != kInvalid) continue;
+    std::size_t alike = 1;
+    for (std::size_t l = 0; l < values.size(); ++l) alike += wedge.values[l] == values[l];
+    if (alike > most) best = &wedge;
+    most = std::max(most, alike);
+  }
+  return best;
 }
 
 void HierarchyBuilder::mark_faces(std::size_t s) {
@@ -187,11 +215,10 @@ bool HierarchyBuilder::has_changed(std::size_t s, const Wedge& wedge) const {
   });
 }
 
-void HierarchyBuilder::replace(std::uint32_t& node, std::uint32_t by, std::size_t s) {
+void HierarchyBuilder::replace(std::uint32_t node, std::uint32_t by, std::size_t s) {
   if (node == by) return;
   nodes_[node].parent = by;
   nodes_[node].step = static_cast<std::uint32_t>(s);
-  node = by;
 }
 
 VertexHierarchy HierarchyBuilder::finish() {

@@ -27,22 +27,7 @@ void check_request(const Model& model, SimplifyOptions options, const Importance
     throw Error(ErrorKind::usage, "no target is given", "simplify",
                 "give --ratio, --triangles, --error or --error-abs; for example --ratio 0.1");
   }
-  if (importance.empty()) return;
-  if (importance.size() != model.meshes.size()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("importance has {} fields for {} meshes", importance.size(), model.meshes.size()),
-                "importance");
-  }
-  for (std::size_t m = 0; m < importance.size(); ++m) {
-    const VertexField& field = importance[m];
-    const std::size_t expected = model.meshes[m].surface.vertex_count();
-    if (!field.empty() && field.size() != expected) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("mesh {} has {} vertices, its importance {}", m, expected, field.size()),
-                  "importance");
-    }
-  }
-  check(importance);
+  check(importance, model);
 }
 
 /// The largest scale at which each mesh is shown; 1 if it is not.
@@ -218,6 +203,25 @@ void check(const Importance& importance) {
       }
     }
   }
+}
+
+void check(const Importance& importance, const Model& model) {
+  if (importance.empty()) return;
+  if (importance.size() != model.meshes.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("importance has {} fields for {} meshes", importance.size(), model.meshes.size()),
+                "importance");
+  }
+  for (std::size_t m = 0; m < importance.size(); ++m) {
+    const VertexField& field = importance[m];
+    const std::size_t expected = model.meshes[m].surface.vertex_count();
+    if (!field.empty() && field.size() != expected) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("mesh {} has {} vertices, its importance {}", m, expected, field.size()),
+                  "importance");
+    }
+  }
+  check(importance);
 }
 
 const char* to_string(StopReason reason) {

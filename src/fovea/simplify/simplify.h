@@ -81,6 +81,8 @@ OptionList describe(SimplifyOptions& options);
 using Importance = std::vector<VertexField>;
 /// Throws Error(format) for values that are NaN or negative.
 void check(const Importance& importance);
+/// And Error(usage) for fields of another model.
+void check(const Importance& importance, const Model& model);
 
 enum class StopReason {
   target,     ///< The triangle count was reached.

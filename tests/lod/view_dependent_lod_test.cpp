@@ -1,0 +1,61 @@
+#include "fovea/lod/view_dependent_lod.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fovea/base/error.h"
+#include "fovea/lod/error_selection.h"
+#include "lod/leveled.h"
+#include "support/meshes.h"
+
+namespace fovea {
+namespace {
+
+using test::Leveled;
+using test::leveled;
+
+class ViewDependent : public testing::Test {
+ protected:
+  LevelCamera camera(double angle) const {
+    return {view_from({3 * std::cos(angle), 1, 3 * std::sin(angle)}, {}, 40), 800, 600};
+  }
+  const Leveled model_ = leveled(test::model_of(test::shuffled(test::torus(48, 24))), 0);
+  Context context_;
+  const VertexHierarchy hierarchy_ = make_vertex_hierarchy(model_.original, model_.levels, context_);
+  ErrorSelection selection_{model_.original, model_.levels};
+  Contraction contraction_{hierarchy_};
+  LevelBudget budget_{.triangles = 400};
+};
+
+TEST_F(ViewDependent, EachFrameOfOneHasItsLevel) {
+  ViewDependentLod lod(selection_, contraction_);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_TRUE(lod.update(camera(i), budget_));
+    EXPECT_LE(contraction_.level().triangle_count(), 400u);
+    EXPECT_GE(contraction_.level().triangle_count(), 398u);
+  }
+}
+
+TEST_F(ViewDependent, WorkIsSpreadOverFramesAndTheLevelBeforeStays) {
+  ViewDependentLod lod(selection_, contraction_, 5);
+  ASSERT_TRUE(lod.update(camera(0), budget_));  // the first is there at once
+  const auto first = contraction_.level().indices;
+  ErrorSelection again(model_.original, model_.levels);
+  Contraction at_once(hierarchy_);
+  ViewDependentLod one(again, at_once);
+  one.update(camera(1), budget_);
+  for (int frame = 0; frame < 4; ++frame) {
+    EXPECT_FALSE(lod.update(camera(1 + frame), budget_));  // that of the first of them counts
+    EXPECT_TRUE(std::ranges::equal(contraction_.level().of_part(hierarchy_, 0),
+                                   std::span(first).first(3 * contraction_.level().triangles[0])));
+  }
+  EXPECT_TRUE(lod.update(camera(9), budget_));
+  EXPECT_TRUE(std::ranges::equal(contraction_.level().of_part(hierarchy_, 0),
+                                 at_once.level().of_part(hierarchy_, 0)));
+}
+
+TEST_F(ViewDependent, NoFrameIsTooFew) { EXPECT_THROW(ViewDependentLod(selection_, contraction_, 0), Error); }
+
+}  // namespace
+}  // namespace fovea
