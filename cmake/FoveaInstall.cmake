@@ -19,5 +19,5 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/fovea-config.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/fovea-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/fovea-config.cmake ${PROJECT_BINARY_DIR}/fovea-config-version.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/FindWebP.cmake DESTINATION ${fovea_package_dir})
+  ${CMAKE_CURRENT_LIST_DIR}/FindEpoxy.cmake ${CMAKE_CURRENT_LIST_DIR}/FindWebP.cmake DESTINATION ${fovea_package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

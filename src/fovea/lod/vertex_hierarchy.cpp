@@ -224,6 +224,7 @@ void HierarchyBuilder::replace(std::uint32_t node, std::uint32_t by, std::size_t
 VertexHierarchy HierarchyBuilder::finish() {
   VertexHierarchy result;
   result.vertices = std::move(vertices_);
+  result.step_count = record_.steps.size();
   std::vector<std::uint32_t> order(nodes_.size()), number(nodes_.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),

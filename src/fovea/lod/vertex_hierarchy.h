@@ -42,6 +42,7 @@ struct VertexHierarchy {
   std::vector<std::uint32_t> vertex;  ///< [#nodes], in `vertices` of its mesh.
   std::vector<std::uint32_t> parent;  ///< [#nodes], kInvalid for those of the coarsest level.
   std::vector<std::uint32_t> step;    ///< [#nodes], that replaces it by its parent; kInvalid likewise.
+  std::size_t step_count = 0;         ///< Of the levels.
   std::uint32_t depth = 0;            ///< Most replacements of a vertex, one after the other.
 
   // Triangles of the original, part by part.
