@@ -3,7 +3,6 @@
 #include "fovea/base/error.h"
 #include "fovea/base/parallel.h"
 #include "fovea/judge/silhouette.h"
-#include "fovea/judge/ssim.h"
 #include "fovea/model/image_error.h"
 
 namespace fovea {
@@ -11,34 +10,6 @@ namespace fovea {
 namespace {
 
 constexpr std::array<Pass, 2> kPasses{Pass::base_color, Pass::lit};  // by JudgedPass
-
-/// A reference picture, with what its comparison with any other needs.
-struct PreparedPicture {
-  Picture picture;
-  SsimReference ssim;
-  FlipReference flip;
-
-  PreparedPicture(Picture&& p, double pixels_per_degree)
-      : picture(std::move(p)), ssim(picture.color), flip(picture.color, pixels_per_degree) {}
-};
-
-/// `mask` is what either covers.
-ImageScores score(const PreparedPicture& reference, const Picture& test, const Plane& flip,
-                  const Plane& mask) {
-  ImageScores s;
-  s.mse = mean_squared_error(reference.picture.color, test.color);
-  s.mse_foreground = mean_squared_error(reference.picture.color, test.color, mask.values);
-  s.psnr = psnr(s.mse);
-  s.psnr_foreground = psnr(s.mse_foreground);
-  const SsimScores ssim = reference.ssim.score(test.color, &mask);
-  s.ssim = ssim.ssim;
-  s.ssim_foreground = ssim.ssim_masked;
-  s.ms_ssim = ssim.ms_ssim;
-  s.ms_ssim_foreground = ssim.ms_ssim_masked;
-  s.flip = mean(flip);
-  s.flip_foreground = mean(flip, &mask);
-  return s;
-}
 
 /// Means over the views.
 void summarize(Comparison& c) {
@@ -150,9 +121,10 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
     const auto draw = [&](const RenderScene& drawn) {
       return render_passes(drawn, views[v], kPasses, render_options, context);
     };
-    std::vector<PreparedPicture> prepared;
-    for (Picture& picture : draw(scene)) prepared.emplace_back(std::move(picture), options.pixels_per_degree);
-    const Image8& coverage = prepared.front().picture.coverage;
+    std::vector<ReferencePicture> references;
+    for (Picture& picture : draw(scene))
+      references.emplace_back(std::move(picture), options.pixels_per_degree);
+    const Image8& coverage = references.front().picture().coverage;
     for (std::size_t t = 0; t < tests.size(); ++t) {
       const std::vector<Picture> pictures = draw(test_scenes[t]);
       const Plane mask = foreground(coverage, pictures.front().coverage);
@@ -160,10 +132,10 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
       view.name = views[v].name;
       view.silhouette_iou = silhouette_iou(coverage, pictures.front().coverage);
       for (std::size_t p = 0; p < kPasses.size(); ++p) {
-        const Plane flip = prepared[p].flip.map(pictures[p].color);
-        view.passes[p] = score(prepared[p], pictures[p], flip, mask);
+        const Plane flip = references[p].flip(pictures[p]);
+        view.passes[p] = references[p].score(pictures[p], flip, mask);
         if (observer.pictures)
-          observer.pictures(v, t, kJudgedPasses[p], prepared[p].picture, pictures[p], flip);
+          observer.pictures(v, t, kJudgedPasses[p], references[p].picture(), pictures[p], flip);
       }
     }
   };

@@ -9,7 +9,7 @@
 
 #include "fovea/base/context.h"
 #include "fovea/base/options.h"
-#include "fovea/judge/flip.h"
+#include "fovea/judge/picture_scores.h"
 #include "fovea/judge/surface_distance.h"
 #include "fovea/model/model.h"
 #include "fovea/render/render.h"
@@ -17,16 +17,6 @@
 #include "fovea/surface/pose.h"
 
 namespace fovea {
-
-/// How like two pictures are, or the views of two models. Names with `foreground`: over the pixels that
-/// either model covers, so that values do not depend on how much background there is.
-struct ImageScores {
-  double mse = 0, mse_foreground = 0;    ///< Of display values.
-  double psnr = 0, psnr_foreground = 0;  ///< dB, from `mse`; infinite if there is no difference.
-  double ssim = 1, ssim_foreground = 1;
-  double ms_ssim = 1, ms_ssim_foreground = 1;
-  double flip = 0, flip_foreground = 0;  ///< 0 is identical, 1 the most.
-};
 
 /// The passes that are compared.
 enum class JudgedPass { base_color, lit };
