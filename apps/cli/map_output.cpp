@@ -24,7 +24,9 @@ bool is_picture_name(const std::filesystem::path& path) {
   return has_extension(path, {".png", ".jpg", ".jpeg", ".webp"});
 }
 
-bool is_field_name(const std::filesystem::path& path) { return has_extension(path, {".npy", ".csv", ".txt"}); }
+bool is_field_name(const std::filesystem::path& path) {
+  return has_extension(path, {".npy", ".csv", ".txt"});
+}
 
 void check_attribute_output(const std::filesystem::path& path, bool force) {
   if (lower_extension(path) == ".obj") {

@@ -83,8 +83,7 @@ class Saliency : public Verb {
     check_request();
     const Input first = read_first(session);
     const Model& model = first.model;
-    const std::vector<Model> poses =
-        read_poses(session, model, std::span(inputs_).subspan(1), read_options_);
+    const std::vector<Model> poses = read_poses(session, model, std::span(inputs_).subspan(1), read_options_);
     if (kind_ == OutputKind::texture)
       images_ = about(first.path, [&] { return texture_space_images(model); });
     check_outputs(kWhole);

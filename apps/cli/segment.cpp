@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "fovea/base/text.h"
 #include "fovea/cluster/cluster_colors.h"
 #include "fovea/cluster/cluster_properties.h"
 #include "fovea/cluster/clusters.h"
@@ -15,7 +16,6 @@
 #include "fovea/render/face_map.h"
 #include "fovea/render/render.h"
 #include "fovea/saliency/model_saliency.h"
-#include "fovea/base/text.h"
 #include "fovea/surface/scene_surface.h"
 #include "input.h"
 #include "map_output.h"
@@ -75,8 +75,7 @@ std::vector<FaceNumbers> per_mesh(const Model& model, const SceneSurface& scene,
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     numbers.emplace_back(model.meshes[m].surface.face_count(), kInvalid);
     const std::size_t first = scene.first_triangle[m], end = scene.first_triangle[m + 1];
-    for (std::size_t f = first; f < end; ++f)
-      numbers.back()[FaceId{f - first}] = clusters.of_face[FaceId{f}];
+    for (std::size_t f = first; f < end; ++f) numbers.back()[FaceId{f - first}] = clusters.of_face[FaceId{f}];
   }
   return numbers;
 }
@@ -93,32 +92,36 @@ std::vector<float> ids_of(const std::vector<FaceNumbers>& numbers) {
 class Segment : public Verb {
  public:
   VerbText text() const override {
-    return {"segment",
-            "divide a model into connected clusters around what stands out",
-            "Divides the triangles of a model into connected clusters that grow from where people look, over what is "
-            "alike in saliency and direction, and says of each what it holds. Several files are poses of one model.",
-            {{"fovea segment armadillo.ply -o clusters.glb --clusters 45", "Clusters in colours for any viewer."},
-             {"fovea segment armadillo.ply -o clusters.png --clusters 45", "A sheet of pictures of them."},
-             {"fovea segment armadillo.ply -o ids.npy", "One number per triangle of the file."},
-             {"fovea segment armadillo.ply -o clusters.json", "Area, saliency, mean normal, ... of each."},
-             {"fovea segment helmet.glb -o marked.glb --as attribute",
-              "The model as it is, with the vertex attribute _CLUSTER."},
-             {"fovea segment dragon.ply -o local.npy --as local",
-              "Saliency as it counts within clusters, for simplify --importance."}}};
+    return {
+        "segment",
+        "divide a model into connected clusters around what stands out",
+        "Divides the triangles of a model into connected clusters that grow from where people look, over "
+        "what is "
+        "alike in saliency and direction, and says of each what it holds. Several files are poses of one "
+        "model.",
+        {{"fovea segment armadillo.ply -o clusters.glb --clusters 45", "Clusters in colours for any viewer."},
+         {"fovea segment armadillo.ply -o clusters.png --clusters 45", "A sheet of pictures of them."},
+         {"fovea segment armadillo.ply -o ids.npy", "One number per triangle of the file."},
+         {"fovea segment armadillo.ply -o clusters.json", "Area, saliency, mean normal, ... of each."},
+         {"fovea segment helmet.glb -o marked.glb --as attribute",
+          "The model as it is, with the vertex attribute _CLUSTER."},
+         {"fovea segment dragon.ply -o local.npy --as local",
+          "Saliency as it counts within clusters, for simplify --importance."}}};
   }
 
   void declare(Arguments& arguments) override {
     arguments.add({"MODEL", "A model file; further files are other poses of it.", nullptr, true, &inputs_});
     arguments.add("Clusters", describe(options_));
-    arguments.add("Output",
-                  {describe_output(output_),
-                   {"as",
-                    "What to write: clusters in colours (a model), the model with a vertex attribute, a number per "
-                    "triangle, properties of each cluster, saliency within clusters as a number per vertex, or "
-                    "pictures. By itself as the extension says: .png, .jpg and .webp are pictures; .npy, .csv and "
-                    ".txt numbers of triangles; .json properties; others colours.",
-                    choice(kind_, {"extension", "colors", "attribute", "ids", "properties", "local", "picture"}), ""},
-                   describe_force(force_)});
+    arguments.add(
+        "Output",
+        {describe_output(output_),
+         {"as",
+          "What to write: clusters in colours (a model), the model with a vertex attribute, a number per "
+          "triangle, properties of each cluster, saliency within clusters as a number per vertex, or "
+          "pictures. By itself as the extension says: .png, .jpg and .webp are pictures; .npy, .csv and "
+          ".txt numbers of triangles; .json properties; others colours.",
+          choice(kind_, {"extension", "colors", "attribute", "ids", "properties", "local", "picture"}), ""},
+         describe_force(force_)});
     arguments.add("Saliency", describe(saliency_options_));
     arguments.add("Picture", describe(view_options_));
     arguments.add("Picture", {describe_view_size(size_), describe_columns(columns_)});
@@ -150,7 +153,8 @@ class Segment : public Verb {
   void check_request() {
     for (const std::string& input : inputs_) check_input(input);
     kind_ = kind();
-    check_output(output_, "clusters.glb", inputs_, force_, [&](const auto& path) { output_check()(path, force_); });
+    check_output(output_, "clusters.glb", inputs_, force_,
+                 [&](const auto& path) { output_check()(path, force_); });
     if (saliency_options_.pose.animation) saliency_options_.key_poses = 1;
   }
 
@@ -206,8 +210,8 @@ class Segment : public Verb {
       }
       case OutputKind::properties: write_properties(properties); break;
       case OutputKind::picture:
-        write_image(picture(face_map(model, numbers, cluster_colors(scene, clusters)), session.context), output_,
-                    force_);
+        write_image(picture(face_map(model, numbers, cluster_colors(scene, clusters)), session.context),
+                    output_, force_);
         break;
       case OutputKind::attribute: return write(with_face_attribute(model, numbers, kAttribute), session);
       default: {
@@ -237,10 +241,12 @@ class Segment : public Verb {
     options.width = options.height = size_;
     const Pose pose = pose_of(colored, saliency_options_.pose);
     const RenderScene scene = make_render_scene(colored, pose, context);
-    return draw_sheet(scene, views_of(view_options_, colored, pose, scene.sphere), columns_, options, context, {});
+    return draw_sheet(scene, views_of(view_options_, colored, pose, scene.sphere), columns_, options, context,
+                      {});
   }
 
-  void tell(Session& session, const Clusters& clusters, const std::vector<ClusterProperties>& properties) const {
+  void tell(Session& session, const Clusters& clusters,
+            const std::vector<ClusterProperties>& properties) const {
     session.report["rounds"] = clusters.rounds;
     session.report["end"] = to_string(clusters.end);
     session.report["clusters"] = to_json(properties);
@@ -250,13 +256,14 @@ class Segment : public Verb {
       std::vector<double> values;
       for (const ClusterProperties& p : properties) values.push_back(static_cast<double>(value_of(p)));
       std::sort(values.begin(), values.end());
-      table.row({name, number_text(values.front()), number_text(values[values.size() / 2]), number_text(values.back())});
+      table.row({name, number_text(values.front()), number_text(values[values.size() / 2]),
+                 number_text(values.back())});
     };
     row("triangles", [](const ClusterProperties& p) { return p.triangles; });
     row("area", [](const ClusterProperties& p) { return p.area; });
     row("mean saliency", [](const ClusterProperties& p) { return p.mean_saliency; });
-    session.print_summary(fmt::format("{} -> {}\n{}, {} ({})\n{}{}\n", printable(inputs_[0]), printable(output_),
-                                      plural(properties.size(), "cluster", "clusters"),
+    session.print_summary(fmt::format("{} -> {}\n{}, {} ({})\n{}{}\n", printable(inputs_[0]),
+                                      printable(output_), plural(properties.size(), "cluster", "clusters"),
                                       plural(clusters.rounds, "round", "rounds"), to_string(clusters.end),
                                       table.text(0), session.spent_text()));
   }

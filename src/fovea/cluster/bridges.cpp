@@ -44,7 +44,8 @@ std::vector<PlacedPoint> along_curve(std::span<const Vec3f> points) {
 
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> bridges(std::span<const Vec3f> points, DisjointSets& sets) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> bridges(std::span<const Vec3f> points,
+                                                             DisjointSets& sets) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> result;
   std::size_t missing = 0;
   for (std::size_t i = 0; i < points.size(); ++i) missing += sets.find(i) == i;

@@ -38,7 +38,8 @@ void make_unique(std::vector<Pair>& pairs) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-/// Clusters that share a vertex, both ways. Of more than a few around one vertex only those that follow each other.
+/// Clusters that share a vertex, both ways. Of more than a few around one vertex only those that follow each
+/// other.
 std::vector<Pair> neighbors(const SceneSurface& scene, const Clusters& clusters) {
   constexpr std::size_t kFew = 12;
   std::vector<Pair> at;  // vertex and cluster

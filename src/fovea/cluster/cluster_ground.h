@@ -14,7 +14,8 @@ namespace fovea {
 
 /// What clusters grow over: a surface that is about 1 large (unit_scale), ready for searches.
 struct ClusterGround {
-  /// `saliency` [#V], 0 or more, is scaled to 0 … 1; if it is the same everywhere, or empty, it is 0. O(#F log #F).
+  /// `saliency` [#V], 0 or more, is scaled to 0 … 1; if it is the same everywhere, or empty, it is 0. O(#F
+  /// log #F).
   ClusterGround(Surface surface, const VertexField& saliency, const Context& context);
 
   /// The most salient corner of a triangle, of equals the vertex with the smallest number.

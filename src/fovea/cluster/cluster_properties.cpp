@@ -55,7 +55,8 @@ Vec3d area_vector(const Surface& surface, std::uint32_t face) {
   return cross(surface.position(t[1]) - a, surface.position(t[2]) - a);
 }
 
-void add_saliency(ClusterProperties& p, const VertexField& saliency, const std::vector<std::uint32_t>& vertices) {
+void add_saliency(ClusterProperties& p, const VertexField& saliency,
+                  const std::vector<std::uint32_t>& vertices) {
   p.vertices = vertices.size();
   if (vertices.empty()) return;
   p.base_saliency = std::numeric_limits<double>::infinity();

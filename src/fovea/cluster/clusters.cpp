@@ -21,16 +21,17 @@ namespace {
 
 void check_saliency(const SceneSurface& scene, const VertexField& saliency) {
   if (saliency.size() != scene.surface.positions.size())
-    throw Error(ErrorKind::usage, fmt::format("saliency has {} values but the scene has {} vertices", saliency.size(),
-                                              scene.surface.positions.size()));
+    throw Error(ErrorKind::usage, fmt::format("saliency has {} values but the scene has {} vertices",
+                                              saliency.size(), scene.surface.positions.size()));
   for (const float s : saliency.values()) {
-    if (!(s >= 0 && std::isfinite(s))) throw Error(ErrorKind::usage, fmt::format("saliency of {} at a vertex", s));
+    if (!(s >= 0 && std::isfinite(s)))
+      throw Error(ErrorKind::usage, fmt::format("saliency of {} at a vertex", s));
   }
 }
 
 /// Growing and seeding again until the seeds come back.
-void grow(const ClusterGround& ground, std::vector<std::uint32_t> seeds, std::uint32_t most_rounds, Clusters& clusters,
-          std::vector<std::uint32_t>& of_face, Context& context) {
+void grow(const ClusterGround& ground, std::vector<std::uint32_t> seeds, std::uint32_t most_rounds,
+          Clusters& clusters, std::vector<std::uint32_t>& of_face, Context& context) {
   Growth growth(ground);
   SeedHistory history;
   history.add(seeds);
@@ -49,7 +50,8 @@ void grow(const ClusterGround& ground, std::vector<std::uint32_t> seeds, std::ui
   }
 }
 
-std::vector<std::uint32_t> peak_vertices(const ClusterGround& ground, const std::vector<std::uint32_t>& faces) {
+std::vector<std::uint32_t> peak_vertices(const ClusterGround& ground,
+                                         const std::vector<std::uint32_t>& faces) {
   std::vector<std::uint32_t> vertices;
   for (const std::uint32_t f : faces) vertices.push_back(ground.peak_vertex(f));
   return vertices;
@@ -58,10 +60,11 @@ std::vector<std::uint32_t> peak_vertices(const ClusterGround& ground, const std:
 }  // namespace
 
 OptionList describe(ClusterOptions& o) {
-  return {{"clusters", "How many clusters; as many as there are triangles if there are fewer.", &o.count, "", 1,
-           1 << 24},
+  return {{"clusters", "How many clusters; as many as there are triangles if there are fewer.", &o.count, "",
+           1, 1 << 24},
           {"method",
-           "Grown over what is alike in saliency and direction, by distance and direction alone, or by the nearest "
+           "Grown over what is alike in saliency and direction, by distance and direction alone, or by the "
+           "nearest "
            "of several centres.",
            choice(o.method, {"salient", "propagative", "kmeans"}), ""},
           {"rounds", "Most rounds of growing clusters and finding their middles.", &o.rounds, "", 1, 100000}};
@@ -86,7 +89,8 @@ Clusters make_clusters(const SceneSurface& scene, const VertexField& saliency, c
   Surface surface = reordered(scene.surface, order);
   scale(surface, unit_scale(surface));
   const bool salient = options.method == ClusterMethod::salient;
-  const ClusterGround ground(std::move(surface), salient ? in_order(saliency, order) : VertexField(), context);
+  const ClusterGround ground(std::move(surface), salient ? in_order(saliency, order) : VertexField(),
+                             context);
 
   const std::size_t count = std::min(static_cast<std::size_t>(options.count), face_count);
   const auto most_rounds = static_cast<std::uint32_t>(options.rounds);
@@ -94,7 +98,8 @@ Clusters make_clusters(const SceneSurface& scene, const VertexField& saliency, c
   clusters.count = static_cast<std::uint32_t>(count);
   std::vector<std::uint32_t> of_face;
   if (options.method == ClusterMethod::kmeans) {
-    KMeans found = k_means(ground.graph, spread_faces(ground.graph, count, context.seed), most_rounds, context);
+    KMeans found =
+        k_means(ground.graph, spread_faces(ground.graph, count, context.seed), most_rounds, context);
     clusters.rounds = found.rounds;
     clusters.end = found.end;
     clusters.seeds = peak_vertices(ground, found.nearest);

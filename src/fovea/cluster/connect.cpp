@@ -78,7 +78,8 @@ class Pieces {
     for (const std::uint32_t f : loose_) {
       for (const DualGraph::Link& link : ground_.graph.around(f)) {
         if (stays_[sets_.find(link.face)])
-          found.push_back({sets_.find(f), of_face_[link.face], shared_length(ground_.surface, f, link.face), 1});
+          found.push_back(
+              {sets_.find(f), of_face_[link.face], shared_length(ground_.surface, f, link.face), 1});
       }
     }
     std::stable_sort(found.begin(), found.end(), [](const Border& a, const Border& b) {
@@ -94,15 +95,16 @@ class Pieces {
       }
     }
     std::sort(sums.begin(), sums.end(), [](const Border& a, const Border& b) {
-      return std::tuple(a.piece, -a.length, b.links, a.cluster) < std::tuple(b.piece, -b.length, a.links, b.cluster);
+      return std::tuple(a.piece, -a.length, b.links, a.cluster) <
+             std::tuple(b.piece, -b.length, a.links, b.cluster);
     });
     return sums;
   }
 
   const ClusterGround& ground_;
   std::vector<std::uint32_t>& of_face_;
-  DisjointSets sets_;              // triangles by piece
-  std::vector<char> stays_;        // of a piece's first triangle
+  DisjointSets sets_;                 // triangles by piece
+  std::vector<char> stays_;           // of a piece's first triangle
   std::vector<std::uint32_t> loose_;  // triangles of other pieces
 };
 

@@ -36,7 +36,8 @@ void measure(DualGraph& graph, const Surface& surface, const Context& context) {
 std::vector<Pair> pairs_over_edges(const Surface& surface) {
   std::vector<std::array<VertexId, 3>> triangles;
   triangles.reserve(surface.triangles.size());
-  for (const auto& t : surface.triangles) triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+  for (const auto& t : surface.triangles)
+    triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
   std::vector<Pair> pairs;
   pairs.reserve(3 * triangles.size() / 2);
   for_each_edge(sorted_half_edges(triangles), [&](std::span<const HalfEdge> edge) {

@@ -12,8 +12,8 @@
 
 namespace fovea {
 
-/// The triangles of a surface as nodes of a connected graph. Triangles that share an edge are linked, those on a
-/// non-manifold edge in a ring; bridges (bridges.h) link what would be apart otherwise.
+/// The triangles of a surface as nodes of a connected graph. Triangles that share an edge are linked, those
+/// on a non-manifold edge in a ring; bridges (bridges.h) link what would be apart otherwise.
 struct DualGraph {
   struct Link {
     std::uint32_t face = 0;
@@ -21,10 +21,10 @@ struct DualGraph {
   };
 
   std::vector<std::uint32_t> first_link;  ///< [#F + 1]
-  std::vector<Link> links;                ///< Each in both directions; those of a face in rising order of faces.
-  std::vector<Vec3f> centers;             ///< [#F]
-  std::vector<Vec3f> normals;             ///< [#F], unit; 0 for degenerate triangles.
-  std::vector<float> areas;               ///< [#F]
+  std::vector<Link> links;     ///< Each in both directions; those of a face in rising order of faces.
+  std::vector<Vec3f> centers;  ///< [#F]
+  std::vector<Vec3f> normals;  ///< [#F], unit; 0 for degenerate triangles.
+  std::vector<float> areas;    ///< [#F]
 
   std::size_t face_count() const { return areas.size(); }
   std::span<const Link> around(std::size_t face) const {

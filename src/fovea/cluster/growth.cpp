@@ -10,10 +10,10 @@ namespace fovea {
 
 namespace {
 
-/// What each factor of a step's cost has at least. As printed they may be 0, and one that is makes whole regions free
-/// whatever the others say. Far smaller floors leave nearly all clusters on claws and ear tips and one or two on the
-/// body, far larger ones hide saliency. The last factor, between neighbours, shrinks with the size of triangles: its
-/// floor is what makes costs add up to about the same on a finer mesh.
+/// What each factor of a step's cost has at least. As printed they may be 0, and one that is makes whole
+/// regions free whatever the others say. Far smaller floors leave nearly all clusters on claws and ear tips
+/// and one or two on the body, far larger ones hide saliency. The last factor, between neighbours, shrinks
+/// with the size of triangles: its floor is what makes costs add up to about the same on a finer mesh.
 constexpr double kFloor = 0.3;
 /// So that degenerate triangles have directions and saliency too, of a surface about 1 large.
 constexpr float kLeastArea = 1e-12f;
@@ -31,8 +31,8 @@ void GrowingCluster::add(Vec3f normal, float saliency, float area) {
 
 double GrowingCluster::step_cost(float from_saliency, float to_saliency, Vec3f to_normal) const {
   const auto apart = [&](float saliency) { return static_cast<double>(std::abs(saliency - to_saliency)); };
-  return (kFloor + 1 - dot(normal_, Vec3d(to_normal))) * (kFloor + apart(mean_)) *
-         (kFloor + apart(start_)) * (kFloor + apart(from_saliency));
+  return (kFloor + 1 - dot(normal_, Vec3d(to_normal))) * (kFloor + apart(mean_)) * (kFloor + apart(start_)) *
+         (kFloor + apart(from_saliency));
 }
 
 Growth::Growth(const ClusterGround& ground)
@@ -60,10 +60,7 @@ const std::vector<std::uint32_t>& Growth::grow(std::span<const std::uint32_t> se
     first[c] = first_face(seeds[c]);
     take(first[c], c);
   }
-  for (std::uint32_t c = 0; c < seeds.size(); ++c) {
-    for (const std::uint32_t corner : ground_.adjacency.corners(seeds[c])) queue(corner / 3, c, 0);
-    queue_around(first[c], c, 0);
-  }
+  for (std::uint32_t c = 0; c < seeds.size(); ++c) begin_around(seeds[c], first[c], c);
   while (!queue_.empty()) {
     const auto [cost, step] = queue_.pop();
     if (faces_[step.face].cluster != kInvalid) continue;
@@ -79,7 +76,8 @@ std::uint32_t Growth::first_face(std::uint32_t seed) {
   std::uint32_t best = kInvalid;
   for (const std::uint32_t corner : corners) {
     const std::uint32_t f = corner / 3;
-    if (faces_[f].cluster == kInvalid && (best == kInvalid || faces_[f].saliency > faces_[best].saliency)) best = f;
+    if (faces_[f].cluster == kInvalid && (best == kInvalid || faces_[f].saliency > faces_[best].saliency))
+      best = f;
   }
   return best != kInvalid ? best : nearest_free(corners.front() / 3);
 }
@@ -99,26 +97,37 @@ std::uint32_t Growth::nearest_free(std::uint32_t face) {
   }
 }
 
+/// Takes what is free around a seed and linked to the cluster's first triangle, and queues what is around
+/// that.
+void Growth::begin_around(std::uint32_t seed, std::uint32_t first, std::uint32_t cluster) {
+  wave_ = {first};
+  for (std::size_t i = 0; i < wave_.size(); ++i) {
+    for (const DualGraph::Link& link : ground_.graph.around(wave_[i])) {
+      const auto& t = ground_.surface.triangles[link.face];
+      if (faces_[link.face].cluster != kInvalid || std::find(t.begin(), t.end(), seed) == t.end()) continue;
+      take(link.face, cluster);
+      wave_.push_back(link.face);
+    }
+  }
+  for (const std::uint32_t face : wave_) queue_around(face, cluster, 0);
+}
+
 void Growth::take(std::uint32_t face, std::uint32_t cluster) {
   Face& f = faces_[face];
   f.cluster = cluster;
   clusters_[cluster].add(f.normal, f.saliency, f.area);
 }
 
-void Growth::queue(std::uint32_t face, std::uint32_t cluster, double cost) {
-  Face& f = faces_[face];
-  if (f.cluster != kInvalid || f.cost <= cost) return;
-  f.cost = cost;
-  queue_.push(cost, {face, cluster});
-}
-
 void Growth::queue_around(std::uint32_t face, std::uint32_t cluster, double cost) {
   const float saliency = faces_[face].saliency;
   for (const DualGraph::Link& link : ground_.graph.around(face)) {
-    const Face& to = faces_[link.face];
+    Face& to = faces_[link.face];
     if (to.cluster != kInvalid) continue;
     const double step = clusters_[cluster].step_cost(saliency, to.saliency, to.normal);
-    queue(link.face, cluster, cost + step * static_cast<double>(link.distance));
+    const double way = cost + step * static_cast<double>(link.distance);
+    if (to.cost <= way) continue;
+    to.cost = way;
+    queue_.push(way, {link.face, cluster});
   }
 }
 

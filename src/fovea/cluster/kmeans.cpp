@@ -27,7 +27,8 @@ class NearestPoint {
     double squared = std::numeric_limits<double>::infinity();
   };
 
-  explicit NearestPoint(const std::vector<Vec3d>& points) : axis_(longest_axis(points)), order_(points.size()) {
+  explicit NearestPoint(const std::vector<Vec3d>& points)
+      : axis_(longest_axis(points)), order_(points.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::pair(along(points[a]), a) < std::pair(along(points[b]), b);
@@ -97,17 +98,18 @@ class Lloyd {
 
   void move_centers() {
     const FacesByCluster members(of_face_, centers_.size());
-    parallel_for(context_, centers_.size(), 1 + centers_.size() / 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t c = begin; c < end; ++c) {
-        Vec3d sum;
-        double area = 0;
-        for (const std::uint32_t f : members.of(c)) {
-          sum += weight(graph_.areas[f]) * Vec3d(graph_.centers[f]);
-          area += weight(graph_.areas[f]);
-        }
-        centers_[c] = sum / area;
-      }
-    });
+    parallel_for(context_, centers_.size(), 1 + centers_.size() / 64,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t c = begin; c < end; ++c) {
+                     Vec3d sum;
+                     double area = 0;
+                     for (const std::uint32_t f : members.of(c)) {
+                       sum += weight(graph_.areas[f]) * Vec3d(graph_.centers[f]);
+                       area += weight(graph_.areas[f]);
+                     }
+                     centers_[c] = sum / area;
+                   }
+                 });
   }
 
   /// Of each cluster, ties by number.
@@ -157,8 +159,8 @@ class Lloyd {
 
 }  // namespace
 
-KMeans k_means(const DualGraph& graph, const std::vector<std::uint32_t>& first_faces, std::uint32_t most_rounds,
-               Context& context) {
+KMeans k_means(const DualGraph& graph, const std::vector<std::uint32_t>& first_faces,
+               std::uint32_t most_rounds, Context& context) {
   Lloyd lloyd(graph, first_faces, context);
   KMeans result;
   for (double last = std::numeric_limits<double>::infinity();;) {

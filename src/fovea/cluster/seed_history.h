@@ -14,8 +14,8 @@ namespace fovea {
 /// Tells when seeds come back. Which cluster grows from which does not matter.
 class SeedHistory {
  public:
-  /// Adds the seeds of a round: `converged` if they are those of the last one, `cycle` if those of an earlier one
-  /// (by hashes of 64 bits). O(#seeds log #seeds).
+  /// Adds the seeds of a round: `converged` if they are those of the last one, `cycle` if those of an earlier
+  /// one (by hashes of 64 bits). O(#seeds log #seeds).
   std::optional<ClusterEnd> add(std::vector<std::uint32_t> seeds);
 
  private:

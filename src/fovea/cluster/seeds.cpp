@@ -101,7 +101,9 @@ std::vector<std::uint32_t> spread_faces(const DualGraph& graph, std::size_t coun
   std::vector<std::uint32_t> chosen{random.below(static_cast<std::uint32_t>(graph.face_count()))};
   // Farthest first, then by number; what came nearer since is put back when it comes up.
   using Far = std::pair<float, std::uint32_t>;
-  const auto later = [](const Far& a, const Far& b) { return std::pair(-a.first, a.second) > std::pair(-b.first, b.second); };
+  const auto later = [](const Far& a, const Far& b) {
+    return std::pair(-a.first, a.second) > std::pair(-b.first, b.second);
+  };
   std::vector<Far> all;
   RadixHeap<std::uint32_t> queue;
   const auto reach = [&](std::uint32_t face, float d) {

@@ -18,15 +18,17 @@ void check_numbers(const Model& model, const std::vector<FaceNumbers>& numbers) 
   if (!fits) throw Error(ErrorKind::usage, "the numbers are those of another model");
 }
 
-/// A layer without values yet in which corners share one if they have the same vertex and number; and the number of
-/// each value.
-std::pair<AttributeLayer, std::vector<std::uint32_t>> layer_of(const TriMesh& mesh, const FaceNumbers& numbers) {
+/// A layer without values yet in which corners share one if they have the same vertex and number; and the
+/// number of each value.
+std::pair<AttributeLayer, std::vector<std::uint32_t>> layer_of(const TriMesh& mesh,
+                                                               const FaceNumbers& numbers) {
   const auto key = [&](std::uint32_t c) {
     return std::pair(mesh.vertex(CornerId{c}), numbers[face_of(CornerId{c})]);
   };
   std::vector<std::uint32_t> corners(3 * mesh.face_count());
   for (std::uint32_t c = 0; c < corners.size(); ++c) corners[c] = c;
-  std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::sort(corners.begin(), corners.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   AttributeLayer layer;
   layer.corner_value.resize(corners.size());
   std::vector<std::uint32_t> number_of_value;
@@ -45,7 +47,8 @@ AttributeLayer color_layer(const TriMesh& mesh, const FaceNumbers& numbers,
   layer.width = 3;
   layer.storage = {ComponentType::u16, true};
   for (const std::uint32_t number : number_of_value) {
-    for (const std::uint8_t c : number == kInvalid ? kGrey : colors[number]) layer.values.push_back(to_light(c));
+    for (const std::uint8_t c : number == kInvalid ? kGrey : colors[number])
+      layer.values.push_back(to_light(c));
   }
   return std::move(layer);
 }
@@ -63,7 +66,8 @@ Model face_map(const Model& model, const std::vector<FaceNumbers>& numbers,
   return result;
 }
 
-Model with_face_attribute(const Model& model, const std::vector<FaceNumbers>& numbers, const std::string& name) {
+Model with_face_attribute(const Model& model, const std::vector<FaceNumbers>& numbers,
+                          const std::string& name) {
   check_numbers(model, numbers);
   Model result = model;
   for (std::size_t m = 0; m < result.meshes.size(); ++m) {
