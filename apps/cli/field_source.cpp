@@ -1,22 +1,18 @@
 #include "field_source.h"
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 
-#include "fovea/base/text.h"
 #include "fovea/io/field_file.h"
+#include "map_output.h"
 
 namespace fovea::cli {
 
 namespace {
 
 bool is_file(const std::string& source) {
-  constexpr std::array<const char*, 3> kExtensions{".npy", ".csv", ".txt"};
   std::error_code ignored;
   // A misspelt file should be missed as a file, not as an attribute.
-  return std::find(kExtensions.begin(), kExtensions.end(), lower_extension(source)) != kExtensions.end() ||
-         std::filesystem::is_regular_file(source, ignored);
+  return is_field_name(source) || std::filesystem::is_regular_file(source, ignored);
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <span>
 
-#include "fovea/base/text.h"
 #include "fovea/io/field_file.h"
 #include "fovea/io/image_file.h"
 #include "fovea/io/write.h"
@@ -12,11 +12,11 @@
 #include "fovea/render/render.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/saliency/texture_space.h"
-#include "fovea/surface/correspondence.h"
 #include "fovea/surface/curvature.h"
 #include "fovea/surface/scene_surface.h"
 #include "fovea/surface/statistics.h"
 #include "input.h"
+#include "map_output.h"
 #include "report.h"
 #include "shared_options.h"
 #include "sheet.h"
@@ -83,7 +83,7 @@ class Saliency : public Verb {
     check_request();
     const Input first = read_first(session);
     const Model& model = first.model;
-    const std::vector<Model> poses = read_poses(model, session);
+    const std::vector<Model> poses = read_poses(session, model, std::span(inputs_).subspan(1), read_options_);
     if (kind_ == OutputKind::texture)
       images_ = about(first.path, [&] { return texture_space_images(model); });
     check_outputs(kWhole);
@@ -119,22 +119,10 @@ class Saliency : public Verb {
     for (const std::string& path : paths_of(map)) check_place_of(path, force_);
   }
 
-  static void check_attribute_output(const std::filesystem::path& path, bool force) {
-    if (lower_extension(path) == ".obj") {
-      throw Error(ErrorKind::usage, "OBJ files have no place for vertex attributes", path.string(),
-                  "name the output .glb, .gltf or .ply");
-    }
-    fovea::check_output(path, force);
-  }
-
   OutputKind kind() const {
     if (kind_ != OutputKind::by_extension) return kind_;
-    const std::string extension = lower_extension(output_);
-    const auto is = [&](std::initializer_list<const char*> names) {
-      return std::find(names.begin(), names.end(), extension) != names.end();
-    };
-    if (is({".png", ".jpg", ".jpeg", ".webp"})) return OutputKind::picture;
-    return is({".npy", ".csv", ".txt"}) ? OutputKind::field : OutputKind::heat;
+    if (is_picture_name(output_)) return OutputKind::picture;
+    return is_field_name(output_) ? OutputKind::field : OutputKind::heat;
   }
 
   void (*output_check() const)(const std::filesystem::path&, bool) {
@@ -152,17 +140,6 @@ class Saliency : public Verb {
     session.report["inputs"] = inputs_json({&first, 1});
     need_triangles(first);
     return first;
-  }
-
-  std::vector<Model> read_poses(const Model& first, Session& session) const {
-    std::vector<Model> poses;
-    for (std::size_t i = 1; i < inputs_.size(); ++i) {
-      Input pose = read_input(session, inputs_[i], read_options_);
-      session.report["inputs"].push_back(file_json(pose.path, pose.bytes));
-      about(pose.path, [&] { surfaces_in(first, pose.model); });
-      poses.push_back(std::move(pose.model));
-    }
-    return poses;
   }
 
   std::vector<const SaliencyMap*> chosen(const ModelSaliency& found) const {
@@ -301,13 +278,6 @@ class Saliency : public Verb {
                                       session.spent_text()));
   }
 
-  static ViewOptions montage_views() {
-    ViewOptions views;
-    views.set = ViewSet::orbit;
-    views.count = 6;
-    return views;
-  }
-
   std::vector<std::string> inputs_;
   std::string output_;
   std::vector<int> images_;  ///< Whose space maps are drawn in, for OutputKind::texture.
@@ -317,7 +287,7 @@ class Saliency : public Verb {
   std::int64_t size_ = 384;
   std::int64_t columns_ = 0;
   SaliencyOptions options_;
-  ViewOptions view_options_ = montage_views();
+  ViewOptions view_options_ = views_around();
   ReadOptions read_options_;
 };
 

@@ -1,10 +1,10 @@
 #include "fovea/render/heat_map.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "fovea/base/srgb.h"
 #include "fovea/model/check_fields.h"
+#include "fovea/render/plain_model.h"
 #include "fovea/render/render.h"
 
 namespace fovea {
@@ -38,26 +38,9 @@ AttributeLayer heat_layer(const TriMesh& mesh, const VertexField& field) {
 
 Model heat_map(const Model& model, const std::vector<VertexField>& fields) {
   check_fields(model, fields);
-  Model result = model;
-  Material material;
-  material.name = "heat";
-  material.metallic_factor = 0;
-  material.double_sided = std::any_of(model.materials.begin(), model.materials.end(),
-                                      [](const Material& m) { return m.double_sided; });
-  result.materials = {material};
-  result.textures.clear();
-  result.samplers.clear();
-  result.images.clear();
+  Model result = plain_model(model, "heat");
   for (std::size_t m = 0; m < result.meshes.size(); ++m) {
     TriMesh& mesh = result.meshes[m].surface;
-    for (Part& part : mesh.parts) {
-      part.material = part.raw ? -1 : 0;
-      part.json.clear();
-    }
-    std::erase_if(mesh.layers, [](const AttributeLayer& layer) {
-      return layer.semantic != Semantic::normal && layer.semantic != Semantic::joints &&
-             layer.semantic != Semantic::weights;
-    });
     mesh.layers.push_back(heat_layer(mesh, fields[m]));
   }
   return result;
@@ -68,9 +51,7 @@ Model with_attribute(const Model& model, const std::vector<VertexField>& fields,
   Model result = model;
   for (std::size_t m = 0; m < result.meshes.size(); ++m) {
     TriMesh& mesh = result.meshes[m].surface;
-    std::erase_if(mesh.layers, [&](const AttributeLayer& layer) {
-      return layer.semantic == Semantic::custom && layer.name == name;
-    });
+    remove_attribute(mesh, name);
     AttributeLayer layer = vertex_layer(mesh, Semantic::custom, 1);
     layer.name = name;
     layer.values.assign(fields[m].values().begin(), fields[m].values().end());
