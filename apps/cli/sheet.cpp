@@ -54,4 +54,13 @@ Image8 draw_sheet(const RenderScene& scene, std::span<const View> views, std::in
   return sheet;
 }
 
+Image8 join_sheet(std::span<const Image8> pictures, std::int64_t columns) {
+  RenderOptions options;
+  options.width = pictures.front().width;
+  options.height = pictures.front().height;
+  Image8 sheet = empty_sheet(pictures.size(), columns, options);
+  for (std::size_t i = 0; i < pictures.size(); ++i) put(pictures[i], i, sheet);
+  return sheet;
+}
+
 }  // namespace fovea::cli

@@ -14,4 +14,7 @@ namespace fovea::cli {
 Image8 draw_sheet(const RenderScene& scene, std::span<const View> views, std::int64_t columns,
                   const RenderOptions& options, Context& context, std::span<const VertexField> fields);
 
+/// The same of pictures that are there already, all of the same size.
+Image8 join_sheet(std::span<const Image8> pictures, std::int64_t columns);
+
 }  // namespace fovea::cli

