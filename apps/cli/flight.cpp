@@ -9,6 +9,7 @@
 
 #include "fovea/gpu/gpu_contraction.h"
 #include "fovea/gpu/level_renderer.h"
+#include "fovea/lod/level_cracks.h"
 #include "fovea/lod/level_model.h"
 #include "fovea/lod/view_dependent_lod.h"
 #include "fovea/render/render.h"
@@ -85,6 +86,7 @@ class Flight {
         scene_(make_render_scene(original, rest_pose(original), context_)),
         cameras_(flight_cameras(options, scene_.sphere)),
         judge_(original, scene_, cameras_, options, context_),
+        cracks_(hierarchy),
         processor_(hierarchy) {}
 
   void use_card(const Model& original) {
@@ -129,12 +131,14 @@ class Flight {
     ViewDependentLod lod(selection_, processor_, static_cast<int>(options_.spread));
     std::vector<Image8> pictures, originals;
     go(frames, [&](const LevelCamera& camera, FrameReport& frame) {
-      frame.cpu_update_ms = milliseconds([&] { lod.update(camera, budget); });
+      bool is_new = false;
+      frame.cpu_update_ms = milliseconds([&] { is_new = lod.update(camera, budget); });
       frame.triangles = processor_.level().triangle_count();
       if (renderer_) {
         frame.cpu_draw_ms = draw_milliseconds([&] { renderer_->draw(camera, processor_.level()); });
         frame.full_draw_ms = draw_milliseconds([&] { renderer_->draw(camera); });
       }
+      if (is_new) frame.cracks = cracks_.count(selection_.taken());
       const auto at = static_cast<std::size_t>(&camera - cameras_.data());
       if (&frame != &frames[at]) return;
       tell(static_cast<double>(at) / static_cast<double>(frames.size()));
@@ -175,6 +179,7 @@ class Flight {
   RenderScene scene_;
   std::vector<LevelCamera> cameras_;
   Judge judge_;
+  CrackFinder cracks_;
   Contraction processor_;
   std::unique_ptr<GpuContraction> card_;
   std::unique_ptr<LevelRenderer> renderer_;

@@ -34,7 +34,8 @@ struct FrameReport {
   double ratio = 0;  ///< Of triangles asked for.
   int frame = 0;
   std::uint64_t triangles = 0;
-  double cpu_update_ms = 0;                          ///< Selection and contraction on the processor.
+  std::uint64_t cracks = 0;  ///< Edges that are open though the original is not (level_cracks.h).
+  double cpu_update_ms = 0;  ///< Selection and contraction on the processor.
   std::optional<double> full_draw_ms, cpu_draw_ms;   ///< With a card: the original; that level, uploaded.
   std::optional<double> gpu_update_ms, gpu_draw_ms;  ///< Selection, and contraction on the card; drawing.
   std::optional<ImageScores> scores;                 ///< Against the original, lit.

@@ -57,13 +57,13 @@ std::string cell(const std::optional<double>& value) { return value ? fmt::forma
 
 std::string csv(const std::vector<FrameReport>& frames) {
   std::string text =
-      "ratio,frame,triangles,full_draw_ms,cpu_update_ms,cpu_draw_ms,gpu_update_ms,gpu_draw_ms,psnr,ms_ssim,"
-      "flip\n";
+      "ratio,frame,triangles,cracks,full_draw_ms,cpu_update_ms,cpu_draw_ms,gpu_update_ms,gpu_draw_ms,psnr,"
+      "ms_ssim,flip\n";
   for (const FrameReport& f : frames) {
     const auto score = [&](double ImageScores::*member) {
       return f.scores ? cell((*f.scores).*member) : std::string();
     };
-    text += fmt::format("{},{},{},{},{:.6g},{},{},{},{},{},{}\n", f.ratio, f.frame, f.triangles,
+    text += fmt::format("{},{},{},{},{},{:.6g},{},{},{},{},{},{}\n", f.ratio, f.frame, f.triangles, f.cracks,
                         cell(f.full_draw_ms), f.cpu_update_ms, cell(f.cpu_draw_ms), cell(f.gpu_update_ms),
                         cell(f.gpu_draw_ms), score(&ImageScores::psnr), score(&ImageScores::ms_ssim),
                         score(&ImageScores::flip));
@@ -102,6 +102,7 @@ class Fly : public Verb {
          {"salient", "Weigh errors by where people look; clusters always do.", &salient_, ""},
          {"unseen", "What errors out of sight count for.", &selection_.unseen, "", 0, 1}});
     arguments.add("Clusters", describe(clusters_));
+    arguments.add("Clusters", describe(matching_));
     arguments.add("Saliency", describe(saliency_options_));
     arguments.add("Device", {{"device",
                               "Whether levels are drawn and made on the graphics card too; by itself where "
@@ -149,7 +150,7 @@ class Fly : public Verb {
 
   void declare_needs(Arguments& arguments) const {
     const auto uses_clusters = [this] { return rule_ == SelectionRule::clusters; };
-    arguments.need({{"clusters", "method", "rounds"}, "--select clusters", uses_clusters});
+    arguments.need({{"clusters", "method", "rounds", "matching"}, "--select clusters", uses_clusters});
     arguments.need({{"unseen"}, "--select error", [this] { return rule_ == SelectionRule::error; }});
     std::vector<std::string> names;
     SaliencyOptions saliency;
@@ -234,7 +235,7 @@ class Fly : public Verb {
     switch (rule_) {
       case SelectionRule::clusters:
         return std::make_unique<ClusterSelection>(prepared.scene, prepared.levels, prepared.clusters,
-                                                  prepared.properties);
+                                                  prepared.properties, matching_);
       case SelectionRule::uniform: return std::make_unique<UniformSelection>(prepared.levels);
       default:
         return std::make_unique<ErrorSelection>(model, prepared.levels, prepared.importance, selection_);
@@ -283,6 +284,7 @@ class Fly : public Verb {
 
   /// Means over the frames of a ratio.
   static Json ratio_json(const FlightReport& report, double ratio) {
+    std::uint64_t cracks = 0;
     std::vector<double> triangles, full, cpu, gpu, psnr, flip, ms_ssim;
     for (const FrameReport& f : report.frames) {
       if (f.ratio != ratio) continue;
@@ -290,6 +292,7 @@ class Fly : public Verb {
       cpu.push_back(f.cpu_update_ms + f.cpu_draw_ms.value_or(0));
       if (f.full_draw_ms) full.push_back(*f.full_draw_ms);
       if (f.gpu_draw_ms) gpu.push_back(*f.gpu_update_ms + *f.gpu_draw_ms);
+      cracks += f.cracks;
       if (!f.scores) continue;
       psnr.push_back(f.scores->psnr);
       flip.push_back(f.scores->flip);
@@ -306,6 +309,7 @@ class Fly : public Verb {
     };
     return {{"ratio", ratio},
             {"triangles", std::round(mean(triangles))},
+            {"cracks", cracks},
             {"full_ms", or_null(full, mean(full))},
             {"cpu_ms", mean(cpu)},
             {"gpu_ms", or_null(gpu, mean(gpu))},
@@ -328,6 +332,7 @@ class Fly : public Verb {
   FlightOptions flight_;
   ErrorSelectionOptions selection_;
   ClusterOptions clusters_;
+  ClusterSelectionOptions matching_;
   SaliencyOptions saliency_options_;
   ReadOptions read_options_;
 };

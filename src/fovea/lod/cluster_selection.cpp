@@ -33,10 +33,20 @@ double distance_to(const ClusterProperties& cluster, const View& view) {
 
 }  // namespace
 
+OptionList describe(ClusterSelectionOptions& o) {
+  return {{"matching",
+           "Where a cluster goes on to coarser levels than one beside it: hold it back at their border, or "
+           "let the "
+           "other go on too, as published.",
+           choice(o.matching, {"hold", "raise"}), ""}};
+}
+
 ClusterSelection::ClusterSelection(const SceneSurface& scene, const MultiTessellation& levels,
-                                   const Clusters& clusters, std::vector<ClusterProperties> properties)
+                                   const Clusters& clusters, std::vector<ClusterProperties> properties,
+                                   const ClusterSelectionOptions& options)
     : levels_(levels),
       properties_(std::move(properties)),
+      matching_(options.matching),
       steps_(clusters.count),
       neighbors_(clusters.count),
       taken_(levels.step_count()),
@@ -91,7 +101,8 @@ void ClusterSelection::begin(const LevelCamera& camera, const LevelBudget& budge
   weigh(camera);
   triangles_ = budget.triangles;
   low_ = 0;
-  high_ = levels_.step_count();
+  high_ = best_ = levels_.step_count();
+  best_left_ = 0;
   done_ = 0;
 }
 
@@ -124,12 +135,14 @@ bool ClusterSelection::advance(std::size_t work) {
   return done_ == total;
 }
 
-/// Halves what is between too few contractions and enough; at last takes those that are enough.
+/// Halves what is between too few contractions and enough; at last takes the best of what was tried, as more
+/// contractions need not leave fewer triangles.
 void ClusterSelection::begin_try() {
   const bool is_last = done_ + levels_.step_count() == total_work();
-  tried_ = is_last ? high_ : low_ + (high_ - low_) / 2;
+  tried_ = is_last ? best_ : low_ + (high_ - low_) / 2;
   deal(tried_);
-  match_neighbors();
+  matched_ = stop_;
+  if (matching_ == ClusterMatching::raise) match_neighbors();
   left_ = levels_.triangles;
 }
 
@@ -150,7 +163,6 @@ void ClusterSelection::deal(std::uint64_t contractions) {
 }
 
 void ClusterSelection::match_neighbors() {
-  matched_ = stop_;
   for (std::size_t c = 0; c < stop_.size(); ++c) {
     for (const Neighbor& neighbor : neighbors_[c]) {
       const auto end = std::ranges::lower_bound(neighbor.needs, stop_[c], {}, &Need::step);
@@ -172,6 +184,12 @@ void ClusterSelection::take(std::size_t begin, std::size_t end) {
   }
 }
 
-void ClusterSelection::finish_try() { (left_ <= triangles_ ? high_ : low_) = tried_; }
+void ClusterSelection::finish_try() {
+  const bool is_enough = left_ <= triangles_;
+  (is_enough ? high_ : low_) = tried_;
+  if (!is_enough || left_ <= best_left_) return;
+  best_ = tried_;
+  best_left_ = left_;
+}
 
 }  // namespace fovea
