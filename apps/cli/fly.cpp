@@ -21,6 +21,7 @@
 #include "fovea/lod/error_selection.h"
 #include "fovea/lod/multi_tessellation.h"
 #include "fovea/lod/uniform_selection.h"
+#include "fovea/model/image_error.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/salient.h"
 #include "fovea/surface/scene_surface.h"
@@ -285,7 +286,7 @@ class Fly : public Verb {
   /// Means over the frames of a ratio.
   static Json ratio_json(const FlightReport& report, double ratio) {
     std::uint64_t cracks = 0;
-    std::vector<double> triangles, full, cpu, gpu, psnr, flip, ms_ssim;
+    std::vector<double> triangles, full, cpu, gpu, mse, flip, ms_ssim;
     for (const FrameReport& f : report.frames) {
       if (f.ratio != ratio) continue;
       triangles.push_back(static_cast<double>(f.triangles));
@@ -294,7 +295,7 @@ class Fly : public Verb {
       if (f.gpu_draw_ms) gpu.push_back(*f.gpu_update_ms + *f.gpu_draw_ms);
       cracks += f.cracks;
       if (!f.scores) continue;
-      psnr.push_back(f.scores->psnr);
+      mse.push_back(f.scores->mse);
       flip.push_back(f.scores->flip);
       ms_ssim.push_back(f.scores->ms_ssim);
     }
@@ -315,8 +316,8 @@ class Fly : public Verb {
             {"gpu_ms", or_null(gpu, mean(gpu))},
             {"full_by_gpu", or_null(gpu, mean(full) / mean(gpu))},
             {"cpu_by_gpu", or_null(gpu, mean(cpu) / mean(gpu))},
-            {"psnr", or_null(psnr, mean(psnr))},
-            {"psnr_worst", or_null(psnr, least(psnr))},
+            {"psnr", or_null(mse, psnr(mean(mse)))},
+            {"psnr_worst", or_null(mse, psnr(most(mse)))},
             {"ms_ssim", or_null(ms_ssim, mean(ms_ssim))},
             {"ms_ssim_worst", or_null(ms_ssim, least(ms_ssim))},
             {"flip", or_null(flip, mean(flip))},

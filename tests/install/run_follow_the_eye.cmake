@@ -1,0 +1,12 @@
+# cmake -DFOVEA=... -DPROGRAM=... -DFOLDER=... -P run_follow_the_eye.cmake: levels of a sample for four views.
+set(input ${FOLDER}/seen_vase.glb)
+execute_process(COMMAND ${FOVEA} sample vase -o ${input} --force COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${PROGRAM} ${input} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+message("${text}")
+if(NOT text MATCHES "frame 3: ([0-9]+) of ([0-9]+) triangles")
+  message(FATAL_ERROR "the example drew no level")
+endif()
+math(EXPR left_of_1000 "1000 * ${CMAKE_MATCH_1} / ${CMAKE_MATCH_2}")
+if(left_of_1000 GREATER 700 OR left_of_1000 LESS 5)
+  message(FATAL_ERROR "${left_of_1000} of 1000 triangles for errors of a pixel")
+endif()
