@@ -34,7 +34,8 @@ TEST(Help, WithoutArgumentsIsAUsageErrorThatHelps) {
 TEST(Help, VersionIsThatOfTheProject) { EXPECT_EQ(fovea({"--version"}).out, "fovea " FOVEA_VERSION "\n"); }
 
 TEST(Help, EveryVerbHasUsageOptionsAndExamples) {
-  for (const std::string verb : {"info", "simplify", "lods", "saliency", "segment", "compare", "render", "sample"}) {
+  for (const std::string verb :
+       {"info", "simplify", "lods", "saliency", "segment", "compare", "render", "sample"}) {
     const Outcome help = fovea({verb, "--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage: fovea " + verb));
@@ -56,7 +57,8 @@ TEST(Help, OptionsShowRangeUnitAndDefault) {
 }
 
 TEST(Help, LinesFitATerminal) {
-  for (const std::string verb : {"info", "simplify", "lods", "saliency", "segment", "compare", "render", "sample"}) {
+  for (const std::string verb :
+       {"info", "simplify", "lods", "saliency", "segment", "compare", "render", "sample"}) {
     std::istringstream lines(fovea({verb, "--help"}).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   }
@@ -78,7 +80,8 @@ TEST(Suggestions, UnknownVerb) {
 TEST(Suggestions, NothingNearListsTheVerbs) {
   EXPECT_THAT(
       fovea({"qqqqqqqqqq"}).err,
-      HasSubstr("verbs are: info, simplify, lods, focus, texture, saliency, segment, compare, render, sample"));
+      HasSubstr(
+          "verbs are: info, simplify, lods, focus, texture, saliency, segment, compare, render, sample"));
 }
 
 TEST(Suggestions, FlagBeforeTheVerb) {

@@ -35,7 +35,8 @@ class SegmentVerb : public ::testing::Test {
 };
 
 /// The colours, or other values of a layer, that the corners of each triangle have.
-std::vector<std::set<std::vector<float>>> values_of_triangles(const TriMesh& mesh, const AttributeLayer& layer) {
+std::vector<std::set<std::vector<float>>> values_of_triangles(const TriMesh& mesh,
+                                                              const AttributeLayer& layer) {
   std::vector<std::set<std::vector<float>>> values(mesh.face_count());
   for (std::size_t c = 0; c < layer.corner_value.size(); ++c) {
     const float* x = layer.value(layer.corner_value[c]);
@@ -79,7 +80,8 @@ TEST_F(SegmentVerb, WritesClustersInColours) {
       ids.insert(values.begin(), values.end());
     }
     EXPECT_EQ(ids.size(), 7u);
-    for (const auto& values : values_of_triangles(mesh, *mesh.find(Semantic::color))) EXPECT_EQ(values.size(), 1u);
+    for (const auto& values : values_of_triangles(mesh, *mesh.find(Semantic::color)))
+      EXPECT_EQ(values.size(), 1u);
   }
 }
 
@@ -110,7 +112,8 @@ TEST_F(SegmentVerb, TheExtensionSaysWhatIsWritten) {
 
   ASSERT_EQ(segment({grid_, "-o", out("p.json"), "--clusters", "5"}).code, 0);
   const nlohmann::json written = nlohmann::json::parse(read_text(out("p.json")));
-  const nlohmann::json told = segment({grid_, "-o", out("p.json"), "--clusters", "5", "--force", "--json"}).json();
+  const nlohmann::json told =
+      segment({grid_, "-o", out("p.json"), "--clusters", "5", "--force", "--json"}).json();
   EXPECT_EQ(written["clusters"], told["clusters"]);
 }
 
@@ -137,8 +140,8 @@ TEST_F(SegmentVerb, SaliencyWithinClustersIsImportanceForSimplify) {
 TEST_F(SegmentVerb, EveryMethodGivesTheSameForASeed) {
   for (const char* method : {"salient", "propagative", "kmeans"}) {
     const auto ids = [&](const char* seed, const char* threads) {
-      EXPECT_EQ(segment({grid_, "-o", out("ids.npy"), "--method", method, "--seed", seed, "--threads", threads,
-                         "--force"})
+      EXPECT_EQ(segment({grid_, "-o", out("ids.npy"), "--method", method, "--seed", seed, "--threads",
+                         threads, "--force"})
                     .code,
                 0);
       return read_field(out("ids.npy"));
@@ -175,7 +178,8 @@ TEST_F(SegmentVerb, LooksAtThePosesOfAnAnimation) {
   ASSERT_EQ(all.code, 0) << all.err;
   EXPECT_GT(all.json()["poses"].size(), 1u);
   EXPECT_EQ(model(out("a.glb")).animations.size(), 1u) << "it still moves";
-  const Outcome moment = segment({out("arm.glb"), "-o", out("b.glb"), "--animation", "0", "--time", "0.5", "--json"});
+  const Outcome moment =
+      segment({out("arm.glb"), "-o", out("b.glb"), "--animation", "0", "--time", "0.5", "--json"});
   ASSERT_EQ(moment.code, 0) << moment.err;
   EXPECT_EQ(moment.json()["poses"], nlohmann::json::array({"animation 0 at 0.50 s"}));
   const Outcome both = segment({out("arm.glb"), "-o", out("c.glb"), "--animation", "0", "--key-poses", "4"});
