@@ -28,9 +28,9 @@ ErrorSelection::ErrorSelection(const Model& original, const MultiTessellation& l
     : levels_(levels),
       scene_(new Scene{make_step_shapes(original, levels, importance), {}}),
       unseen_(static_cast<float>(options.unseen)),
-      strict_(levels.step_count()),
       taken_(levels.step_count()),
       on_screen_(levels.step_count()),
+      with_all_(levels.step_count()),
       counts_(kHalf) {
   if (!(options.unseen >= 0 && options.unseen <= 1))
     throw Error(ErrorKind::usage, "what errors out of sight count for is a share, 0 to 1", "unseen");
@@ -44,7 +44,6 @@ void ErrorSelection::find_makers() {
   for (std::uint32_t s = 0; s < levels_.step_count(); ++s) {
     const CollapseStep& step = levels_.record.steps[s];
     const bool merges = step.kind == StepKind::collapse;
-    strict_.set(s, !merges || scene_->shapes.made[s] == 0);
     if (!merges) {
       makers_.push_back({kInvalid, kInvalid});
       continue;
@@ -86,13 +85,16 @@ void ErrorSelection::look(std::size_t begin, std::size_t end) {
     float error = is_seen ? on_screen_[s] : -unseen_ * on_screen_[s];
     // Only what is locked is infinite.
     error = std::isinf(scene_->shapes.error[s]) ? scene_->shapes.error[s] : std::min(error, kMost);
-    const auto wait_for = [&](std::uint32_t needed) { error = std::max(error, on_screen_[needed]); };
-    if (is_seen || strict_.has(s)) {
-      for (const std::uint32_t needed : levels_.needs_of(s)) wait_for(needed);
+    float with_all = error;
+    for (const std::uint32_t needed : levels_.needs_of(s)) with_all = std::max(with_all, with_all_[needed]);
+    with_all_[s] = with_all;
+    if (is_seen) {
+      for (const std::uint32_t needed : levels_.needs_of(s)) error = std::max(error, on_screen_[needed]);
     }
     for (const std::uint32_t maker : makers_[s]) {
-      if (maker != kInvalid) wait_for(maker);
+      if (maker != kInvalid) error = std::max(error, on_screen_[maker]);
     }
+    if (scene_->shapes.takes_more[s] != 0) error = with_all;
     on_screen_[s] = error;
     counts_[std::bit_cast<std::uint32_t>(error) / kHalf] += levels_.removed_by(s);
   }

@@ -31,7 +31,7 @@ class ErrorSelection : public LevelSelection {
  public:
   /// `importance` as for `simplify`: [#meshes][#V], or empty for 1 everywhere; what is locked (infinity)
   /// stays in every level. `levels` must outlive this. Throws Error(usage) if they or the importance are of
-  /// another model, or for options out of range. O(#F); 45 bytes for each step.
+  /// another model, or for options out of range. O(#F); 50 bytes for each step.
   ErrorSelection(const Model& original, const MultiTessellation& levels, const Importance& importance = {},
                  const ErrorSelectionOptions& options = {});
   ~ErrorSelection() override;
@@ -56,12 +56,12 @@ class ErrorSelection : public LevelSelection {
   float unseen_;
   /// [#steps], the last steps before that made the two vertices it merges; kInvalid where none did.
   std::vector<std::array<std::uint32_t, 2>> makers_;
-  StepBits strict_;  ///< Steps that wait for all they need even out of sight.
   StepBits taken_;
 
   // Of the view in hand:
   float error_px_ = 0;
-  std::vector<float> on_screen_;       // [#steps], pixels, none less than what it needs
+  std::vector<float> on_screen_;       // [#steps], pixels, none less than what it waits for
+  std::vector<float> with_all_;        // [#steps], the same if nothing were out of sight
   std::vector<std::uint64_t> counts_;  // [2¹⁶], triangles removed by steps, by one half of the bits of that
   std::uint64_t to_remove_ = 0;        // triangles, not counted yet
   std::uint32_t upper_ = 0;            // half of the bits of the bound

@@ -14,13 +14,13 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 Edge edge(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Edges that come an odd number of times, each once, sorted.
-std::vector<Edge> odd(std::vector<Edge> edges) {
+/// Each edge once, sorted, of those that come so many times that `wanted(times)`.
+std::vector<Edge> those(std::vector<Edge> edges, const auto& wanted) {
   std::ranges::sort(edges);
   std::vector<Edge> result;
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end] == edges[begin]) ++end;
-    if ((end - begin) % 2 == 1) result.push_back(edges[begin]);
+    if (wanted(end - begin)) result.push_back(edges[begin]);
   }
   return result;
 }
@@ -61,7 +61,7 @@ CrackFinder::CrackFinder(const VertexHierarchy& hierarchy) : hierarchy_(hierarch
     for (std::size_t k = 0; k < 3; ++k)
       edges.push_back(edge(original->place[c[k]], original->place[c[(k + 1) % 3]]));
   }
-  original->borders = odd(std::move(edges));
+  original->borders = those(std::move(edges), [](std::size_t times) { return times % 2 == 1; });
   original_ = std::move(original);
 }
 
@@ -84,8 +84,9 @@ std::size_t CrackFinder::count(const StepBits& taken) const {
   }
   for (const auto& [a, b] : original_->borders) borders.push_back(edge(place(a), place(b)));
   std::ranges::sort(borders);
-  return static_cast<std::size_t>(std::ranges::count_if(
-      odd(std::move(edges)), [&](const Edge& e) { return !std::ranges::binary_search(borders, e); }));
+  const std::vector<Edge> open = those(std::move(edges), [](std::size_t times) { return times == 1; });
+  return static_cast<std::size_t>(
+      std::ranges::count_if(open, [&](const Edge& e) { return !std::ranges::binary_search(borders, e); }));
 }
 
 }  // namespace fovea

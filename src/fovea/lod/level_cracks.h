@@ -8,8 +8,9 @@
 
 namespace fovea {
 
-/// Looks for cracks in levels: edges between places, whatever values meet there, on which triangles end in an
-/// odd number though no border edge of the original has become that edge.
+/// Looks for cracks in levels: edges between places, whatever values meet there, on which a single triangle
+/// ends though no border edge of the original has become that edge. A border edge is one on which an odd
+/// number of triangles end.
 class CrackFinder {
  public:
   /// `hierarchy` must outlive this. O(#F log #F).

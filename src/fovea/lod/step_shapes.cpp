@@ -1,6 +1,7 @@
 #include "fovea/lod/step_shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -33,7 +34,7 @@ class ShapeMaker {
       add_sphere(s);
       add_cone(order);
       add_error(s);
-      shapes_.made.push_back(static_cast<std::uint32_t>(order.new_faces().size()));
+      shapes_.takes_more.push_back(order.new_faces().empty() || takes_more(s, order));
     }
     return std::move(shapes_);
   }
@@ -86,6 +87,19 @@ class ShapeMaker {
       weight = std::max(weight, kept);
     }
     shapes_.error.push_back(std::isinf(weight) ? weight : levels_.error[s] * std::sqrt(weight));
+  }
+
+  bool takes_more(std::size_t s, const StepOrder& order) const {
+    const CollapseStep& step = levels_.record.steps[s];
+    if (step.kind != StepKind::collapse) return true;
+    const std::array ends{levels_.vertex(step.mesh, step.removed), levels_.vertex(step.mesh, step.kept)};
+    for (std::size_t i = s > 0 ? levels_.record.steps[s - 1].faces_end : 0; i < step.faces_end; ++i) {
+      const auto& face = order.faces()[order.first_face(step.mesh) + levels_.record.removed_faces[i].value];
+      for (const std::uint32_t end : ends) {
+        if (std::ranges::find(face, end) == face.end()) return true;
+      }
+    }
+    return false;
   }
 
   const MultiTessellation& levels_;

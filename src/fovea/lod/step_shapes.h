@@ -22,7 +22,9 @@ struct StepShapes {
   std::vector<float> radius;                  ///< with its error.
   std::vector<float> axis_x, axis_y, axis_z;  ///< Mean normal; 0 without one.
   std::vector<float> spread;                  ///< Sine of the largest angle to it; 2 from 90° on.
-  std::vector<std::uint32_t> made;            ///< Triangles.
+  /// Whether it takes other triangles than those on the edge it collapses (two that came to lie on each
+  /// other, a whole component), or leaves none.
+  std::vector<std::uint8_t> takes_more;
   /// Its error by the importance of what it stands for: times the root of the largest weight, as weights
   /// multiply squares. Infinite where that is locked.
   std::vector<float> error;
