@@ -96,9 +96,8 @@ class Segment : public Verb {
         "segment",
         "divide a model into connected clusters around what stands out",
         "Divides the triangles of a model into connected clusters that grow from where people look, over "
-        "what is "
-        "alike in saliency and direction, and says of each what it holds. Several files are poses of one "
-        "model.",
+        "what is alike in saliency and direction, and says of each what it holds. Several files are poses "
+        "of one model.",
         {{"fovea segment armadillo.ply -o clusters.glb --clusters 45", "Clusters in colours for any viewer."},
          {"fovea segment armadillo.ply -o clusters.png --clusters 45", "A sheet of pictures of them."},
          {"fovea segment armadillo.ply -o ids.npy", "One number per triangle of the file."},

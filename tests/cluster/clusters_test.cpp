@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -108,6 +109,18 @@ TEST(Clusters, HoldEveryTriangleOnceAndAreConnected) {
       }
     }
   }
+}
+
+TEST(Clusters, SeedsOfKMeansAreInTheirClusters) {
+  const SceneSurface scene = scene_of(test::shuffled(test::wavy_grid(40, 40, 0.5)));
+  const Clusters clusters = divide(scene, 30, ClusterMethod::kmeans);
+  std::vector<bool> in_cluster(30, false);
+  for (std::size_t f = 0; f < scene.surface.triangles.size(); ++f) {
+    const std::uint32_t c = clusters.of_face[FaceId{f}];
+    for (const std::uint32_t v : scene.surface.triangles[f])
+      in_cluster[c] = in_cluster[c] || v == clusters.seeds[c];
+  }
+  EXPECT_EQ(std::count(in_cluster.begin(), in_cluster.end(), true), 30);
 }
 
 TEST(Clusters, OfASoupOfTriangles) {

@@ -1,9 +1,10 @@
 // Simplifies models with the command line, makes levels of detail of them, shrinks their textures, writes saliency
-// into them, and puts every output through the Khronos glTF validator.
+// and clusters into them, and puts every output through the Khronos glTF validator.
 //
 //   node validate.mjs FOVEA OUTPUT-FOLDER sample NAME     a sample model, in every way of writing
 //   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER: at 10 %, with levels,
-//                                                         with small textures, as a heat map and with an attribute
+//                                                         with small textures, as a heat map, in clusters, and
+//                                                         with attributes of both
 //
 // Exit status: 0 all valid, 1 something is not, 77 (skipped) if FOVEA_DATA is not set.
 
@@ -50,7 +51,7 @@ async function faultOf(input, output, words, faultOfCount) {
   const { code, text } = await run(words[0], input, '-o', output, '--force', '--quiet', ...words.slice(1));
   const namesExtension = code === UNSUPPORTED && /\b[A-Z]+_\w+/.test(text);
   // What only draws or weighs triangles refuses a model without them.
-  const nothingThere = words[0] === 'saliency' && code === UNSUPPORTED &&
+  const nothingThere = ['saliency', 'segment'].includes(words[0]) && code === UNSUPPORTED &&
     (before.triangles === 0 ? /no triangles/ : /scene shows no triangles/).test(text);
   // Of a few triangles there is nothing simpler.
   const noLevels = words[0] === 'lods' && code === UNSUPPORTED &&
@@ -74,9 +75,11 @@ function simplifyFault(input, output, ratio, ...options) {
 const HEIGHT = ['--geometry-weight', '0', '--texture-weight', '0', '--visibility-weight', '0', '--extremity-weight', '0',
   '--height-weight', '1'];
 
-function saliencyFault(input, output, kind) {
+const MAPS = [['saliency', 'heat'], ['saliency', 'attribute'], ['segment', 'colors'], ['segment', 'attribute']];
+
+function mapFault(input, output, verb, kind) {
   // Reading drops triangles that use a point twice.
-  return faultOf(input, output, ['saliency', '--as', kind, ...HEIGHT], (before, after) =>
+  return faultOf(input, output, [verb, '--as', kind, ...HEIGHT], (before, after) =>
     after > before || (before > 0 && after === 0) ? `${after} triangles instead of ${before}` : null);
 }
 
@@ -118,10 +121,10 @@ async function sampleFaults() {
     const output = path.join(outputFolder, `${name}-${suffix}`);
     faults += await report(path.basename(output), simplifyFault(input, output, ratio, ...options));
   }
-  for (const kind of ['heat', 'attribute']) {
+  for (const [verb, kind] of MAPS) {
     for (const extension of ['glb', 'gltf']) {
-      const output = path.join(outputFolder, `${name}-${kind}.${extension}`);
-      faults += await report(path.basename(output), saliencyFault(input, output, kind));
+      const output = path.join(outputFolder, `${name}-${verb}-${kind}.${extension}`);
+      faults += await report(path.basename(output), mapFault(input, output, verb, kind));
     }
   }
   for (const [suffix, ...options] of [
@@ -153,8 +156,9 @@ async function corpusFaults() {
     faults += await report(file, simplifyFault(input, output, 0.1));
     faults += await report(`${file}, textures`, textureFault(input, output, '--texture-format', 'webp', '--max-texture', '128', '--texture-psnr', '30'));
     faults += await report(`${file}, levels`, lodsFault(input, output.replace(/\.glb$/, '-lods.glb'), '--metric', 'quadric', '--textures', 'keep'));
-    for (const kind of ['heat', 'attribute'])
-      faults += await report(`${file}, ${kind}`, saliencyFault(input, output.replace(/\.glb$/, `-${kind}.glb`), kind));
+    for (const [verb, kind] of MAPS)
+      faults += await report(`${file}, ${verb} ${kind}`,
+        mapFault(input, output.replace(/\.glb$/, `-${verb}-${kind}.glb`), verb, kind));
   }
   return faults;
 }

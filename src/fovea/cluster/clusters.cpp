@@ -102,9 +102,9 @@ Clusters make_clusters(const SceneSurface& scene, const VertexField& saliency, c
         k_means(ground.graph, spread_faces(ground.graph, count, context.seed), most_rounds, context);
     clusters.rounds = found.rounds;
     clusters.end = found.end;
-    clusters.seeds = peak_vertices(ground, found.nearest);
     of_face = std::move(found.of_face);
     connect(ground, of_face, count);
+    clusters.seeds = peak_vertices(ground, nearest_faces(ground.graph, of_face, found.centers));
   } else {
     grow(ground,
          salient ? salient_seeds(ground, count, context.seed)

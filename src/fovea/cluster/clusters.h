@@ -36,18 +36,20 @@ const char* to_string(ClusterEnd end);
 struct Clusters {
   std::uint32_t count = 0;
   Field<FaceId, std::uint32_t> of_face;  ///< [#F of the scene]
-  std::vector<std::uint32_t> seeds;      ///< [count], vertices that they grew from.
-  std::uint32_t rounds = 0;
+  std::vector<std::uint32_t> seeds;      ///< [count], vertices that they grew from; of `kmeans` near centres.
+  std::uint32_t rounds = 0;              ///< Taken.
   ClusterEnd end = ClusterEnd::converged;
 };
 
 /// Divides a scene. Every cluster has a triangle and is connected: through edges, and where the scene falls
 /// apart into pieces through bridges between near ones (dual_graph.h). `saliency` [#V of the scene], 0 or
-/// more; only `salient` looks at it. Random choices are by the seed of `context`; the same for any number of
-/// threads.
+/// more; only `salient` looks at it, and where it is the same everywhere direction and distance decide alone.
+/// Random choices are by the seed of `context`; the same for any number of threads, and in any unit of
+/// length. How far from the publications, and why: docs/clusters.md.
 ///
 /// Throws Error(usage) for options out of range or saliency of another scene, Error(unsupported) for a scene
-/// without triangles, Error(cancelled). O(rounds · #F log #F).
+/// without triangles or with corners that are not finite, Error(cancelled). O(rounds · #F log #F); `kmeans`
+/// O(rounds · #F · count^(2/3)).
 Clusters make_clusters(const SceneSurface& scene, const VertexField& saliency, const ClusterOptions& options,
                        Context& context);
 

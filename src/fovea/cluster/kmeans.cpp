@@ -112,20 +112,8 @@ class Lloyd {
                  });
   }
 
-  /// Of each cluster, ties by number.
-  std::vector<std::uint32_t> nearest_faces() const {
-    const FacesByCluster members(of_face_, centers_.size());
-    std::vector<std::uint32_t> nearest;
-    for (std::size_t c = 0; c < centers_.size(); ++c) {
-      const auto faces = members.of(c);
-      nearest.push_back(*std::min_element(faces.begin(), faces.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::pair(squared_[a], a) < std::pair(squared_[b], b);
-      }));
-    }
-    return nearest;
-  }
-
   const std::vector<std::uint32_t>& of_face() const { return of_face_; }
+  const std::vector<Vec3d>& centers() const { return centers_; }
 
  private:
   void fill_empty() {
@@ -176,8 +164,22 @@ KMeans k_means(const DualGraph& graph, const std::vector<std::uint32_t>& first_f
     lloyd.move_centers();
   }
   result.of_face = lloyd.of_face();
-  result.nearest = lloyd.nearest_faces();
+  result.centers = lloyd.centers();
   return result;
+}
+
+std::vector<std::uint32_t> nearest_faces(const DualGraph& graph, const std::vector<std::uint32_t>& of_face,
+                                         const std::vector<Vec3d>& centers) {
+  std::vector<std::uint32_t> nearest(centers.size());
+  std::vector<double> least(centers.size(), std::numeric_limits<double>::infinity());
+  for (std::uint32_t f = 0; f < of_face.size(); ++f) {
+    const std::uint32_t c = of_face[f];
+    const double squared = length_squared(Vec3d(graph.centers[f]) - centers[c]);
+    if (squared >= least[c]) continue;
+    least[c] = squared;
+    nearest[c] = f;
+  }
+  return nearest;
 }
 
 }  // namespace fovea

@@ -12,8 +12,8 @@
 namespace fovea {
 
 struct KMeans {
-  std::vector<std::uint32_t> of_face;  ///< [#F], each of `nearest.size()` clusters has one.
-  std::vector<std::uint32_t> nearest;  ///< For each cluster its triangle that is nearest to its centre.
+  std::vector<std::uint32_t> of_face;  ///< [#F], each of `centers.size()` clusters has one.
+  std::vector<Vec3d> centers;          ///< Of the clusters.
   std::uint32_t rounds = 0;
   ClusterEnd end = ClusterEnd::converged;
 };
@@ -25,5 +25,10 @@ struct KMeans {
 /// #F · #clusters^(2/3)) on surfaces whose clusters are about alike in size.
 KMeans k_means(const DualGraph& graph, const std::vector<std::uint32_t>& first_faces,
                std::uint32_t most_rounds, Context& context);
+
+/// For each cluster that of its triangles which is nearest to its centre, ties by number; each has one.
+/// O(#F).
+std::vector<std::uint32_t> nearest_faces(const DualGraph& graph, const std::vector<std::uint32_t>& of_face,
+                                         const std::vector<Vec3d>& centers);
 
 }  // namespace fovea

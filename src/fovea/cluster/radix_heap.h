@@ -12,9 +12,8 @@
 namespace fovea {
 
 /// A queue of items by numbers, smallest first, for searches in which no number is smaller than one that was
-/// taken (Ahuja, Mehlhorn, Orlin, Tarjan 1990). Of equal numbers the last one pushed comes first, unless they
-/// were pushed before a smaller one was taken. Keeps its memory when emptied. O(1) to push, O(64) amortised
-/// to take.
+/// taken (Ahuja, Mehlhorn, Orlin, Tarjan 1990). Which of equal numbers comes first follows from the order of
+/// the calls. Keeps its memory when emptied. O(1) to push, O(64) amortised to take.
 template <class Item>
 class RadixHeap {
  public:
