@@ -17,12 +17,12 @@
 #include "fovea/model/check_fields.h"
 #include "fovea/model/texture_use.h"
 #include "fovea/texture/bake.h"
-#include "fovea/texture/byte_budget.h"
 #include "fovea/texture/image_use.h"
 #include "fovea/texture/image_ways.h"
 #include "fovea/texture/normal_bake.h"
 #include "fovea/texture/rebake.h"
 #include "fovea/texture/seen_points.h"
+#include "fovea/texture/texture_budget.h"
 
 namespace fovea {
 
@@ -377,15 +377,23 @@ Shrunk shrunk(const Prepared& prepared, std::span<const WantedImage> wanted, con
   return shrinker.take();
 }
 
-/// With images as small as it takes for all files together, from the images as they are.
-Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limits,
-                    const ShrinkOptions& options, std::span<const VertexField> field, Context& context) {
+TextureBudget texture_budget(const Prepared& prepared, std::span<const WantedImage> limits,
+                             const ShrinkOptions& options, std::span<const VertexField> field,
+                             Context& context) {
   std::vector<double> pixels(kPictureSizes.begin(), kPictureSizes.end());
   // As seen aslant, and straight on.
   if (options.shown_pixels > 0) pixels = {0.75 * options.shown_pixels, 1.5 * options.shown_pixels};
-  ByteBudget budget(prepared.model, prepared.files, prepared.atlases, limits, options.output, field, pixels,
-                    static_cast<double>(*options.max_bytes), context);
-  return shrunk(prepared, budget.choose(), options, field, context);
+  return {prepared.model, prepared.files, prepared.atlases, limits,
+          options.output, field,          pixels,           static_cast<double>(*options.max_bytes),
+          context};
+}
+
+/// With images as small as it takes for all files together, from the images as they are.
+Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limits,
+                    const ShrinkOptions& options, std::span<const VertexField> field, Context& context) {
+  TextureBudget budget = texture_budget(prepared, limits, options, field, context);
+  return shrunk(prepared, budget.choose(static_cast<double>(*options.max_bytes), true), options, field,
+                context);
 }
 
 /// The same for images that are baked anew: first that, at their own sizes and without loss.
@@ -488,6 +496,33 @@ Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::sp
       context.report("image-kept", fmt::format("stays as it is: {}", why), fmt::format("image {}", i));
   }
   return result;
+}
+
+struct TextureLadder::State {
+  State(const Model& model, const ShrinkOptions& asked, Context& told)
+      : options(asked),
+        context(told),
+        prepared(prepare(model, options.rebake)),
+        budget(texture_budget(prepared, limits_of(prepared, options), options, {}, context)) {}
+
+  ShrinkOptions options;
+  Context& context;
+  Prepared prepared;
+  TextureBudget budget;  // refers to what is prepared
+};
+
+TextureLadder::TextureLadder(const Model& model, const ShrinkOptions& options, Context& context) {
+  check_options(model, options);
+  if (!options.max_bytes || options.rebake.original != nullptr)
+    throw Error(ErrorKind::usage, "a ladder of textures is for a number of bytes, and not for baking anew");
+  state_ = std::make_unique<State>(model, options, context);
+}
+
+TextureLadder::~TextureLadder() = default;
+
+Shrunk TextureLadder::within(std::uint64_t bytes, bool refine) {
+  return shrunk(state_->prepared, state_->budget.choose(static_cast<double>(bytes), refine), state_->options,
+                {}, state_->context);
 }
 
 }  // namespace fovea

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -86,8 +87,8 @@ struct Shrunk {
 /// Sides are at least 1.
 ///
 /// With `max_bytes` sizes and qualities are chosen image by image so that pictures lose least
-/// (byte_budget.h), after baking anew if both are asked for; no texels move, and the other limits hold too.
-/// What cannot change takes what it takes: if all is at its least and still too large, that is reported
+/// (texture_budget.h), after baking anew if both are asked for; no texels move, and the other limits hold
+/// too. What cannot change takes what it takes: if all is at its least and still too large, that is reported
 /// ("bytes-missed").
 ///
 /// `field` [#meshes][#V] says how much is looked at, 0 … 1; empty for alike everywhere. One atlas after the
@@ -95,5 +96,23 @@ struct Shrunk {
 /// do not go together, and for a field or an original of another model, Error(cancelled).
 Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
                        Context& context);
+
+/// The images of a model for one number of bytes after another: what they may become is measured once.
+class TextureLadder {
+ public:
+  /// `options` as for `shrink_textures`, with the most that will be asked for as `max_bytes` and without
+  /// baking anew. `model` and `context` must outlive this. Throws as `shrink_textures`. Seconds for large
+  /// images.
+  TextureLadder(const Model& model, const ShrinkOptions& options, Context& context);
+  ~TextureLadder();
+
+  /// Images that take at most so many bytes together, or as few as there are. With `refine` more qualities
+  /// are tried, as `shrink_textures` does; some seconds more for large images.
+  Shrunk within(std::uint64_t bytes, bool refine);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace fovea

@@ -26,18 +26,20 @@ namespace fovea {
 /// lose least for each byte they save (`choose_steps`), so that the product of these sums is least: a picture
 /// of any size counts by how many times more or less it loses. More qualities are tried beside what is
 /// chosen, and chosen again.
-class ByteBudget {
+class TextureBudget {
  public:
   /// Images are those of the model; none may take as much as its file did before, in `files` [#images], whose
   /// formats stay. Those that materials read in different ways take what they take. `pixels` as for
   /// ImageSights. Refers to the model, the files and the atlases. Throws Error(cancelled).
-  ByteBudget(const Model& model, std::span<const ImageChange::State> files, std::span<const Atlas> atlases,
-             std::span<const WantedImage> limits, const ImageOutputOptions& options,
-             std::span<const VertexField> field, std::vector<double> pixels, double bytes, Context& context);
+  TextureBudget(const Model& model, std::span<const ImageChange::State> files, std::span<const Atlas> atlases,
+                std::span<const WantedImage> limits, const ImageOutputOptions& options,
+                std::span<const VertexField> field, std::vector<double> pixels, double bytes,
+                Context& context);
 
-  /// [#images] Of those whose files fit what loses least; the fewest bytes of all if none do. To be called
-  /// once.
-  std::vector<WantedImage> choose();
+  /// [#images] Of those whose files fit into so many bytes, at most those of the constructor, what loses
+  /// least; the fewest bytes of all if none do. With `refine` more qualities are tried near those: some
+  /// seconds for large images.
+  std::vector<WantedImage> choose(double bytes, bool refine);
 
  private:
   struct Candidate {

@@ -1,4 +1,4 @@
-#include "fovea/texture/byte_budget.h"
+#include "fovea/texture/texture_budget.h"
 
 #include <algorithm>
 #include <utility>
@@ -30,10 +30,10 @@ double lit_weight(const TexelMeaning& meaning) {
 
 }  // namespace
 
-ByteBudget::ByteBudget(const Model& model, std::span<const ImageChange::State> files,
-                       std::span<const Atlas> atlases, std::span<const WantedImage> limits,
-                       const ImageOutputOptions& options, std::span<const VertexField> field,
-                       std::vector<double> pixels, double bytes, Context& context)
+TextureBudget::TextureBudget(const Model& model, std::span<const ImageChange::State> files,
+                             std::span<const Atlas> atlases, std::span<const WantedImage> limits,
+                             const ImageOutputOptions& options, std::span<const VertexField> field,
+                             std::vector<double> pixels, double bytes, Context& context)
     : model_(model),
       files_(files),
       limits_(limits.begin(), limits.end()),
@@ -63,11 +63,11 @@ ByteBudget::ByteBudget(const Model& model, std::span<const ImageChange::State> f
   }
 }
 
-ImageSights ByteBudget::sights(const Candidate& candidate) const {
+ImageSights TextureBudget::sights(const Candidate& candidate) const {
   return {model_, atlas_faces(model_, *candidate.atlas), field_, pixels_};
 }
 
-void ByteBudget::measure(Candidate& candidate) const {
+void TextureBudget::measure(Candidate& candidate) const {
   const ImageChange::State& file = files_[candidate.image];
   const WantedImage& limit = limits_[candidate.image];
   const ImageUse& use = uses_[candidate.image];
@@ -89,7 +89,7 @@ void ByteBudget::measure(Candidate& candidate) const {
   }
 }
 
-void ByteBudget::refine(Candidate& candidate, double bytes) const {
+void TextureBudget::refine(Candidate& candidate, double bytes) const {
   const ImageUse& use = uses_[candidate.image];
   const Image8 image = without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use);
   const ImageSights seen = sights(candidate);
@@ -98,12 +98,12 @@ void ByteBudget::refine(Candidate& candidate, double bytes) const {
     candidate.ways.push_back(std::move(more));
 }
 
-std::vector<AtlasFace> ByteBudget::known_faces(const Candidate& candidate) const {
+std::vector<AtlasFace> TextureBudget::known_faces(const Candidate& candidate) const {
   return candidate.atlas->fixed_because.empty() ? atlas_faces(model_, *candidate.atlas)
                                                 : std::vector<AtlasFace>{};
 }
 
-void ByteBudget::add(Sums& sums, const Candidate& candidate, const ImageWay& way) const {
+void TextureBudget::add(Sums& sums, const Candidate& candidate, const ImageWay& way) const {
   const TexelMeaning& meaning = uses_[candidate.image].meaning;
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     const double loss = candidate.area * way.losses[p];
@@ -112,7 +112,7 @@ void ByteBudget::add(Sums& sums, const Candidate& candidate, const ImageWay& way
   }
 }
 
-ByteBudget::Numbers ByteBudget::numbers_within(double bytes) const {
+TextureBudget::Numbers TextureBudget::numbers_within(double bytes) const {
   double area = 0;
   for (const Candidate& candidate : candidates_) area += candidate.area;
   // At first a picture counts by what it loses in the mean over all ways.
@@ -153,7 +153,7 @@ ByteBudget::Numbers ByteBudget::numbers_within(double bytes) const {
   return numbers;
 }
 
-std::vector<WantedImage> ByteBudget::wanted(const Numbers& numbers) const {
+std::vector<WantedImage> TextureBudget::wanted(const Numbers& numbers) const {
   std::vector<WantedImage> images = limits_;
   for (std::size_t c = 0; c < numbers.size(); ++c) {
     const ImageWay& way = candidates_[c].ways[numbers[c]];
@@ -166,14 +166,15 @@ std::vector<WantedImage> ByteBudget::wanted(const Numbers& numbers) const {
   return images;
 }
 
-std::vector<WantedImage> ByteBudget::choose() {
-  const double room = most_bytes_ - kept_bytes_;
+std::vector<WantedImage> TextureBudget::choose(double bytes, bool refine) {
+  const double room = bytes - kept_bytes_;
   const Numbers first = numbers_within(room);
+  if (!refine) return wanted(first);
   double left = room;
   for (std::size_t c = 0; c < candidates_.size(); ++c) left -= candidates_[c].ways[first[c]].bytes;
   parallel_for_or_throw(context_, candidates_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
-      refine(candidates_[c], candidates_[c].ways[first[c]].bytes + left);
+      this->refine(candidates_[c], candidates_[c].ways[first[c]].bytes + left);
   });
   return wanted(numbers_within(room));
 }

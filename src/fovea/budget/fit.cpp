@@ -1,0 +1,280 @@
+#include "fovea/budget/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "fovea/base/error.h"
+#include "fovea/budget/marginal.h"
+#include "fovea/budget/picture_loss.h"
+#include "fovea/io/gltf_write.h"
+#include "fovea/model/image_error.h"
+#include "fovea/simplify/simplify.h"
+#include "fovea/texture/shrink.h"
+
+namespace fovea {
+
+namespace {
+
+constexpr double kFewerTriangles = 0.7;  // from rung to rung
+constexpr double kFewestTriangles = 0.005;
+constexpr double kFewerImageBytes = 0.6;
+constexpr double kFewestImageBytes = 0.008;
+/// Bytes of JSON that may come when images get other sizes and names of formats.
+constexpr std::uint64_t kJsonSlack = 256;
+
+std::uint64_t image_bytes(const Model& model) {
+  std::uint64_t sum = 0;
+  for (const EncodedImage& image : model.images) sum += image.bytes.size();
+  return sum;
+}
+
+/// Ladders of one model, and what their rungs take and lose together.
+class Fitter {
+ public:
+  Fitter(const Model& model, const FitOptions& options, Context& context)
+      : model_(model),
+        options_(options),
+        context_(context),
+        pictures_(model, options.views, static_cast<int>(options.view_size), context) {
+    scratch_.threads = context.threads;
+    scratch_.seed = context.seed;
+    make_mesh_ladder();
+    make_texture_ladder();
+  }
+
+  FitResult run() {
+    const std::uint64_t most = options_.match == FitMetric::none ? *options_.bytes : 0;
+    std::vector<JointPoint> path = prune(ladders(), most);
+    FitResult result;
+    for (const JointPoint& point : path) result.path.push_back(fit_point(point));
+    const JointPoint& end = path.back();
+    if (options_.match != FitMetric::none) {
+      match(path, result);
+    } else {
+      result.reached = end.bytes <= most;
+      result.model = combined(end.rungs);
+      result.chosen = result.path.back();
+      if (result.reached && path.size() > 1) spend(end, result);
+    }
+    result.pictures = drawn_;
+    return result;
+  }
+
+ private:
+  struct MeshRung {
+    std::size_t steps = 0;
+    std::uint64_t triangles = 0;
+    std::uint64_t bytes = 0;  ///< Of the file without images.
+  };
+
+  void make_mesh_ladder() {
+    const std::uint64_t total = counts(model_).triangles;
+    SimplifyOptions simplify_options;
+    simplify_options.metric = Metric::quadric;
+    simplify_options.ratio = kFewestTriangles;
+    record_ = simplify(model_, simplify_options, {}, context_).record;
+    const double most =
+        options_.triangles ? static_cast<double>(*options_.triangles) : static_cast<double>(total);
+    for (double triangles = std::min(most, static_cast<double>(total));;
+         triangles = std::min(triangles * kFewerTriangles, triangles - 1)) {
+      const std::size_t steps = record_.steps_to(static_cast<std::uint64_t>(std::max(triangles, 0.0)));
+      if (!meshes_.empty() && steps == meshes_.back().steps) break;
+      const MeshRung rung = measured(steps);
+      if (meshes_.empty() || rung.bytes < meshes_.back().bytes) meshes_.push_back(rung);
+      if (triangles < kFewestTriangles * static_cast<double>(total) || triangles < 2) break;
+    }
+  }
+
+  MeshRung measured(std::size_t steps) {
+    const Model level = replay(model_, record_, steps);
+    const GltfOutput output = write_gltf(level, options_.binary, "model", options_.write, scratch_);
+    std::uint64_t bytes = 0;
+    for (const OutputFile& file : output.files) bytes += file.bytes.size();
+    return {steps, record_.triangles_after(steps), bytes - output.bytes.images};
+  }
+
+  void make_texture_ladder() {
+    textures_.push_back(model_);
+    const std::uint64_t whole = image_bytes(model_);
+    if (whole == 0) return;
+    ShrinkOptions shrink;
+    shrink.output.format = options_.format;
+    shrink.max_bytes = static_cast<std::int64_t>(whole);
+    shrink.shown_pixels = static_cast<double>(options_.view_size);
+    shrinker_ = std::make_unique<TextureLadder>(model_, shrink, scratch_);
+    for (double bytes = static_cast<double>(whole) * kFewerImageBytes;
+         bytes > kFewestImageBytes * static_cast<double>(whole); bytes *= kFewerImageBytes) {
+      context_.advance_or_throw("textures", 1 - bytes / static_cast<double>(whole));
+      Shrunk shrunk = shrinker_->within(static_cast<std::uint64_t>(bytes), false);
+      if (shrunk.bytes >= image_bytes(textures_.back())) continue;
+      textures_.push_back(std::move(shrunk.model));
+    }
+  }
+
+  JointLadders ladders() {
+    JointLadders ladders;
+    ladders.rungs = {meshes_.size(), textures_.size()};
+    ladders.bytes = [this](const Rungs& rungs) {
+      return meshes_[rungs[0]].bytes + image_bytes(textures_[rungs[1]]);
+    };
+    ladders.loss = [this](const Rungs& rungs) { return loss(combined(rungs)); };
+    return ladders;
+  }
+
+  double loss(const Model& model) {
+    const auto rungs = static_cast<double>(meshes_.size() + textures_.size());
+    context_.advance_or_throw("fit", std::min(1.0, static_cast<double>(++drawn_) / (1.5 * rungs)));
+    return pictures_.squared(model);
+  }
+
+  /// The triangles of a number of steps with the images of a model.
+  Model with_images(std::size_t steps, const Model& images) const {
+    Model level = replay(model_, record_, steps);
+    Model result = images;
+    result.meshes = std::move(level.meshes);
+    return result;
+  }
+  Model combined(const Rungs& rungs) const {
+    return with_images(meshes_[rungs[0]].steps, textures_[rungs[1]]);
+  }
+
+  FitPoint fit_point(const JointPoint& point) const {
+    return {meshes_[point.rungs[0]].triangles, image_bytes(textures_[point.rungs[1]]), point.bytes,
+            psnr(point.loss)};
+  }
+
+  std::uint64_t file_bytes(const Model& model) {
+    std::uint64_t bytes = 0;
+    for (const OutputFile& file : write_gltf(model, options_.binary, "model", options_.write, scratch_).files)
+      bytes += file.bytes.size();
+    return bytes;
+  }
+
+  /// Tries the numbers of triangles around a point with all other bytes spent on images.
+  void spend(const JointPoint& end, FitResult& result) {
+    const std::uint64_t most = *options_.bytes;
+    double least = end.loss;
+    std::size_t rung = end.rungs[0];
+    const std::size_t first = rung > 0 ? rung - 1 : 0, last = std::min(rung + 1, meshes_.size() - 1);
+    for (std::size_t m = first; shrinker_ && m <= last; ++m) {
+      if (meshes_[m].bytes + kJsonSlack >= most) continue;
+      const std::uint64_t room = most - meshes_[m].bytes - kJsonSlack;
+      const Shrunk images = shrinker_->within(std::min(room, image_bytes(model_)), false);
+      if (images.bytes > room) continue;
+      Model tried = with_images(meshes_[m].steps, images.model);
+      const double lost = loss(tried);
+      if (lost >= least || file_bytes(tried) > most) continue;
+      least = lost;
+      rung = m;
+      result.model = std::move(tried);
+    }
+    add_triangles(rung, result.model);
+    refine_images(result.model, least);
+    result.chosen = {counts(result.model).triangles, image_bytes(result.model), file_bytes(result.model),
+                     psnr(loss(result.model))};
+  }
+
+  /// As many triangles as there is room for, up to those of the rung above.
+  void add_triangles(std::size_t rung, Model& model) {
+    if (rung == 0) return;
+    std::size_t enough = meshes_[rung].steps,
+                few = meshes_[rung - 1].steps;  // steps that fit, and that do not
+    constexpr std::size_t kFine = 64;
+    while (enough > few + std::max<std::size_t>(1, enough / kFine)) {
+      const std::size_t middle = few + (enough - few) / 2;
+      Model tried = with_images(middle, model);
+      if (file_bytes(tried) > *options_.bytes) {
+        few = middle;
+      } else {
+        enough = middle;
+        model = std::move(tried);
+      }
+    }
+  }
+
+  /// The same triangles with qualities of images tried more finely, if that loses less.
+  void refine_images(Model& model, double) {
+    if (!shrinker_) return;
+    const std::uint64_t images = image_bytes(model), rest = file_bytes(model) - images;
+    if (rest + kJsonSlack >= *options_.bytes) return;
+    const std::uint64_t room = std::min(*options_.bytes - rest - kJsonSlack, image_bytes(model_));
+    const Shrunk finer = shrinker_->within(room, true);
+    Model tried = finer.model;
+    tried.meshes = model.meshes;
+    if (finer.bytes <= room && file_bytes(tried) <= *options_.bytes && loss(tried) < loss(model))
+      model = std::move(tried);
+  }
+
+  /// The last point of the path that is as like the original as asked.
+  void match(const std::vector<JointPoint>& path, FitResult& result) {
+    // Likeness falls along the path, all but everywhere.
+    std::size_t good = 0, bad = path.size();
+    result.reached = is_like(combined(path[0].rungs));
+    while (result.reached && bad - good > 1) {
+      const std::size_t middle = good + (bad - good) / 2;
+      (is_like(combined(path[middle].rungs)) ? good : bad) = middle;
+    }
+    result.model = combined(path[good].rungs);
+    result.chosen = result.path[good];
+    result.chosen.bytes = file_bytes(result.model);
+  }
+
+  bool is_like(const Model& model) {
+    const Comparison scores = pictures_.scores(model);
+    ++drawn_;
+    return std::ranges::all_of(scores.passes, [&](const ImageScores& s) {
+      switch (options_.match) {
+        case FitMetric::psnr: return s.psnr_foreground >= options_.match_value;
+        case FitMetric::ms_ssim: return s.ms_ssim_foreground >= options_.match_value;
+        case FitMetric::flip: return s.flip_foreground <= options_.match_value;
+        case FitMetric::none: break;
+      }
+      return true;
+    });
+  }
+
+  const Model& model_;
+  const FitOptions& options_;
+  Context& context_;
+  Context scratch_;  // what is tried is not told
+  PictureLoss pictures_;
+  CollapseRecord record_;
+  std::vector<MeshRung> meshes_;  // from the most triangles down
+  std::vector<Model> textures_;   // from the original's images down
+  std::unique_ptr<TextureLadder> shrinker_;
+  std::size_t drawn_ = 0;
+};
+
+void check_options(const Model& model, const FitOptions& options) {
+  if (options.bytes.has_value() == (options.match != FitMetric::none))
+    throw Error(ErrorKind::usage, "a fit is to a number of bytes or to a likeness", "fit",
+                "give one of --bytes and --match");
+  if (counts(model).triangles == 0) throw Error(ErrorKind::unsupported, "the model has no triangles");
+}
+
+}  // namespace
+
+OptionList describe(FitOptions& o) {
+  OptionList options{
+      {"triangles", "Triangles to keep at most.", &o.triangles, "triangles", 1},
+      {"view-size", "Pixels along each side of the pictures that decide: how large the model will be seen.",
+       &o.view_size, "pixels", 64, 4096}};
+  ImageOutputOptions output;
+  for (Option& option : describe(output)) {
+    if (option.name != "texture-format") continue;
+    option.value = choice(o.format, std::get<Option::Choice>(option.value).names);
+    options.push_back(option);
+  }
+  return options;
+}
+
+FitResult fit(const Model& model, const FitOptions& options, Context& context) {
+  check_options(model, options);
+  return Fitter(model, options, context).run();
+}
+
+}  // namespace fovea
