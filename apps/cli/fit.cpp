@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <span>
 #include <utility>
 
@@ -72,9 +73,8 @@ class Fit : public Verb {
           "For small pictures: other triangles and texels are worth it."},
          {"fovea fit chair.glb -o chair-same.glb --match ms-ssim=0.98@512",
           "The smallest that still looks the same at 512 pixels."},
-         {"fovea fit helmet.glb -o helmet-1m.glb --bytes 1MB --texture-format webp --compression meshopt "
-          "--curve curve.json",
-          "Stored more compactly; what any number of bytes would give."}}};
+         {"fovea fit helmet.glb -o h.glb --bytes 1MB --texture-format webp --curve curve.json",
+          "With WebP; and what any number of bytes would give."}}};
   }
 
   void declare(Arguments& arguments) override {
@@ -128,6 +128,7 @@ class Fit : public Verb {
                    [&](const auto& path) { check_json_output(path, options_.write.force); });
     }
     options_.binary = lower_extension(output_) == ".glb";
+    options_.stem = std::filesystem::path(output_).stem().string();
     if (bytes_.empty() == match_.empty()) {
       throw Error(ErrorKind::usage, bytes_.empty() ? "no budget is given" : "there are two targets", {},
                   "give --bytes, for example --bytes 500KB, or --match, for example --match ms-ssim=0.98");

@@ -14,7 +14,7 @@ TEST(Help, NamesAllVerbs) {
   EXPECT_EQ(help.code, 0);
   EXPECT_THAT(help.err, IsEmpty());
   for (const char* verb :
-       {"info", "simplify", "lods", "saliency", "segment", "fly", "compare", "render", "sample"})
+       {"info", "simplify", "lods", "saliency", "segment", "fly", "fit", "compare", "render", "sample"})
     EXPECT_THAT(help.out, HasSubstr(verb));
   EXPECT_EQ(fovea({"-h"}).out, help.out);
 }
@@ -22,7 +22,7 @@ TEST(Help, NamesAllVerbs) {
 TEST(Help, TheCommandLinesPageHasAllVerbs) {
   const std::string page = read_text(FOVEA_COMMAND_PAGE);
   for (const char* verb :
-       {"info", "simplify", "lods", "saliency", "segment", "fly", "compare", "render", "sample"})
+       {"info", "simplify", "lods", "saliency", "segment", "fly", "fit", "compare", "render", "sample"})
     EXPECT_THAT(page, HasSubstr("| `" + std::string(verb) + "` | "));
 }
 
@@ -37,7 +37,7 @@ TEST(Help, VersionIsThatOfTheProject) { EXPECT_EQ(fovea({"--version"}).out, "fov
 
 TEST(Help, EveryVerbHasUsageOptionsAndExamples) {
   for (const std::string verb :
-       {"info", "simplify", "lods", "saliency", "segment", "fly", "compare", "render", "sample"}) {
+       {"info", "simplify", "lods", "saliency", "segment", "fly", "fit", "compare", "render", "sample"}) {
     const Outcome help = fovea({verb, "--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage: fovea " + verb));
@@ -60,7 +60,7 @@ TEST(Help, OptionsShowRangeUnitAndDefault) {
 
 TEST(Help, LinesFitATerminal) {
   for (const std::string verb :
-       {"info", "simplify", "lods", "saliency", "segment", "fly", "compare", "render", "sample"}) {
+       {"info", "simplify", "lods", "saliency", "segment", "fly", "fit", "compare", "render", "sample"}) {
     std::istringstream lines(fovea({verb, "--help"}).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   }

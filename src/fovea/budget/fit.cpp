@@ -91,7 +91,7 @@ class Fitter {
 
   MeshRung measured(std::size_t steps) {
     const Model level = replay(model_, record_, steps);
-    const GltfOutput output = write_gltf(level, options_.binary, "model", options_.write, scratch_);
+    const GltfOutput output = write_gltf(level, options_.binary, options_.stem, options_.write, scratch_);
     std::uint64_t bytes = 0;
     for (const OutputFile& file : output.files) bytes += file.bytes.size();
     return {steps, record_.triangles_after(steps), bytes - output.bytes.images};
@@ -149,7 +149,8 @@ class Fitter {
 
   std::uint64_t file_bytes(const Model& model) {
     std::uint64_t bytes = 0;
-    for (const OutputFile& file : write_gltf(model, options_.binary, "model", options_.write, scratch_).files)
+    for (const OutputFile& file :
+         write_gltf(model, options_.binary, options_.stem, options_.write, scratch_).files)
       bytes += file.bytes.size();
     return bytes;
   }
@@ -173,7 +174,7 @@ class Fitter {
       result.model = std::move(tried);
     }
     add_triangles(rung, result.model);
-    refine_images(result.model, least);
+    refine_images(result.model);
     result.chosen = {counts(result.model).triangles, image_bytes(result.model), file_bytes(result.model),
                      psnr(loss(result.model))};
   }
@@ -197,7 +198,7 @@ class Fitter {
   }
 
   /// The same triangles with qualities of images tried more finely, if that loses less.
-  void refine_images(Model& model, double) {
+  void refine_images(Model& model) {
     if (!shrinker_) return;
     const std::uint64_t images = image_bytes(model), rest = file_bytes(model) - images;
     if (rest + kJsonSlack >= *options_.bytes) return;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fovea/base/context.h"
@@ -25,8 +26,9 @@ struct FitOptions {
   ViewOptions views{.set = ViewSet::icosahedron};  ///< That pictures are compared from.
   std::int64_t view_size = 512;  ///< Pixels along each side: how large the model will be looked at.
   TextureOutput format = TextureOutput::keep;
-  WriteOptions write;  ///< As the file will be written,
-  bool binary = true;  ///< GLB, or glTF with files beside it.
+  WriteOptions write;          ///< As the file will be written,
+  bool binary = true;          ///< GLB, or glTF with files beside it,
+  std::string stem = "model";  ///< named after this: names take bytes too.
 };
 OptionList describe(FitOptions& options);
 
