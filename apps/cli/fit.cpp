@@ -128,6 +128,7 @@ class Fit : public Verb {
                    [&](const auto& path) { check_json_output(path, options_.write.force); });
     }
     options_.binary = lower_extension(output_) == ".glb";
+    options_.whole_path = !curve_.empty();
     options_.stem = std::filesystem::path(output_).stem().string();
     if (bytes_.empty() == match_.empty()) {
       throw Error(ErrorKind::usage, bytes_.empty() ? "no budget is given" : "there are two targets", {},

@@ -103,10 +103,13 @@ class Fitter {
     if (whole == 0) return;
     ShrinkOptions shrink;
     shrink.output.format = options_.format;
-    shrink.max_bytes = static_cast<std::int64_t>(whole);
+    // Larger files than the budget cost most to look at, and none of them can be chosen.
+    const std::uint64_t most =
+        options_.bytes && !options_.whole_path ? std::min(whole, *options_.bytes) : whole;
+    shrink.max_bytes = static_cast<std::int64_t>(most);
     shrink.shown_pixels = static_cast<double>(options_.view_size);
     shrinker_ = std::make_unique<TextureLadder>(model_, shrink, scratch_);
-    for (double bytes = static_cast<double>(whole) * kFewerImageBytes;
+    for (double bytes = std::min(static_cast<double>(whole) * kFewerImageBytes, static_cast<double>(most));
          bytes > kFewestImageBytes * static_cast<double>(whole); bytes *= kFewerImageBytes) {
       context_.advance_or_throw("textures", 1 - bytes / static_cast<double>(whole));
       Shrunk shrunk = shrinker_->within(static_cast<std::uint64_t>(bytes), false);
@@ -164,7 +167,7 @@ class Fitter {
     for (std::size_t m = first; shrinker_ && m <= last; ++m) {
       if (meshes_[m].bytes + kJsonSlack >= most) continue;
       const std::uint64_t room = most - meshes_[m].bytes - kJsonSlack;
-      const Shrunk images = shrinker_->within(std::min(room, image_bytes(model_)), false);
+      const Shrunk images = shrinker_->within(room, false);
       if (images.bytes > room) continue;
       Model tried = with_images(meshes_[m].steps, images.model);
       const double lost = loss(tried);
@@ -174,6 +177,7 @@ class Fitter {
       result.model = std::move(tried);
     }
     add_triangles(rung, result.model);
+    choose_triangles(result.model);
     refine_images(result.model);
     result.chosen = {counts(result.model).triangles, image_bytes(result.model), file_bytes(result.model),
                      psnr(loss(result.model))};
@@ -197,12 +201,38 @@ class Fitter {
     }
   }
 
+  /// As many triangles, but for a few, simplified anew with pictures deciding about the last part of the way
+  /// (simplify.h), if that loses less.
+  void choose_triangles(Model& model) {
+    std::uint64_t triangles = counts(model).triangles;
+    if (triangles == record_.triangles_before) return;
+    constexpr int kTries = 3;
+    for (int i = 0; i < kTries; ++i) {
+      SimplifyOptions simplify_options;
+      simplify_options.triangles = static_cast<std::int64_t>(triangles);
+      SimplifyResult simplified = simplify(model_, simplify_options, {}, scratch_);
+      if (simplified.metric == Metric::quadric) return;  // as the record has them
+      Model tried = model;
+      tried.meshes = std::move(simplified.model.meshes);
+      const std::uint64_t bytes = file_bytes(tried);
+      if (bytes <= *options_.bytes) {
+        if (loss(tried) < loss(model)) model = std::move(tried);
+        return;
+      }
+      // Their vertices take a little more.
+      constexpr double kMargin = 0.995;
+      triangles =
+          static_cast<std::uint64_t>(kMargin * static_cast<double>(triangles) *
+                                     static_cast<double>(*options_.bytes) / static_cast<double>(bytes));
+    }
+  }
+
   /// The same triangles with qualities of images tried more finely, if that loses less.
   void refine_images(Model& model) {
     if (!shrinker_) return;
     const std::uint64_t images = image_bytes(model), rest = file_bytes(model) - images;
     if (rest + kJsonSlack >= *options_.bytes) return;
-    const std::uint64_t room = std::min(*options_.bytes - rest - kJsonSlack, image_bytes(model_));
+    const std::uint64_t room = *options_.bytes - rest - kJsonSlack;
     const Shrunk finer = shrinker_->within(room, true);
     Model tried = finer.model;
     tried.meshes = model.meshes;

@@ -25,6 +25,8 @@ struct FitOptions {
                            ///< lit alike.
   ViewOptions views{.set = ViewSet::icosahedron};  ///< That pictures are compared from.
   std::int64_t view_size = 512;  ///< Pixels along each side: how large the model will be looked at.
+  bool whole_path =
+      false;  ///< The path has choices for more than `bytes` too; with large images some seconds more.
   TextureOutput format = TextureOutput::keep;
   WriteOptions write;          ///< As the file will be written,
   bool binary = true;          ///< GLB, or glTF with files beside it,
