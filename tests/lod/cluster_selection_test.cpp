@@ -19,8 +19,8 @@ namespace {
 using test::Leveled;
 using test::leveled;
 
-/// A torus around z in sectors. With 64 the contractions that are dealt out run out before each has some, as each
-/// gets 0.02 of the whole.
+/// A torus around z in sectors. With 64 the contractions that are dealt out run out before each has some, as
+/// each gets 0.02 of the whole.
 struct Sectors {
   Leveled model = leveled(test::model_of(test::shuffled(test::torus(64, 32))), 0);
   SceneSurface scene = scene_surface(model.original, rest_pose(model.original));
