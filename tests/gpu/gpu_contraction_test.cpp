@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "fovea/base/error.h"
@@ -12,6 +11,7 @@
 #include "fovea/lod/cut.h"
 #include "fovea/lod/error_selection.h"
 #include "fovea/lod/view_dependent_lod.h"
+#include "gpu/with_gpu.h"
 #include "lod/leveled.h"
 #include "support/meshes.h"
 
@@ -21,18 +21,7 @@ namespace {
 using test::Leveled;
 using test::leveled;
 
-class GpuContractionTest : public testing::Test {
- protected:
-  void SetUp() override {
-    try {
-      gpu_.emplace();
-    } catch (const Error& error) {
-      GTEST_SKIP() << error.what();
-    }
-  }
-  std::optional<GpuContext> gpu_;
-  Context context_;
-};
+class GpuContractionTest : public test::WithGpu {};
 
 void expect_same(const LevelIndices& a, const LevelIndices& b, const VertexHierarchy& hierarchy,
                  const std::string& name) {

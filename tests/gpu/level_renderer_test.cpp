@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
-
-#include "fovea/base/error.h"
-#include "fovea/gpu/gpu_context.h"
 #include "fovea/lod/error_selection.h"
 #include "fovea/lod/level_model.h"
 #include "fovea/render/render.h"
+#include "gpu/with_gpu.h"
 #include "lod/leveled.h"
 #include "support/meshes.h"
 
@@ -17,27 +14,15 @@ namespace {
 
 constexpr int kSize = 128;
 
-class LevelRendererTest : public testing::Test {
- protected:
-  void SetUp() override {
-    try {
-      gpu_.emplace();
-    } catch (const Error& error) {
-      GTEST_SKIP() << error.what();
-    }
-  }
+class LevelRendererTest : public test::WithGpu {};
 
-  static std::size_t covered(const Image8& image) {
-    std::size_t count = 0;
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) count += image.at(x, y)[0] != 128;
-    }
-    return count;
+std::size_t covered(const Image8& image) {
+  std::size_t count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) count += image.at(x, y)[0] != 128;
   }
-
-  std::optional<GpuContext> gpu_;
-  Context context_;
-};
+  return count;
+}
 
 TEST_F(LevelRendererTest, DrawsTheSameFromBothSides) {
   for (const bool perspective : {true, false}) {

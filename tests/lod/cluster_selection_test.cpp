@@ -16,6 +16,7 @@
 namespace fovea {
 namespace {
 
+using test::is_closed;
 using test::Leveled;
 using test::leveled;
 
@@ -55,15 +56,6 @@ struct Sectors {
     return {below, mesh.face_count() - below};
   }
 };
-
-bool is_closed(const MultiTessellation& levels, const Cut& cut) {
-  for (std::size_t s = 0; s < cut.size(); ++s) {
-    for (const std::uint32_t needed : levels.needs_of(s)) {
-      if (cut[s] != 0 && cut[needed] == 0) return false;
-    }
-  }
-  return true;
-}
 
 TEST(ClusterSelection, IsACutOfAtMostSoManyTriangles) {
   const Sectors it(64);

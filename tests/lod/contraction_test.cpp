@@ -17,22 +17,10 @@
 namespace fovea {
 namespace {
 
+using test::bits_of;
 using test::Leveled;
 using test::leveled;
-
-Cut random_cut(const MultiTessellation& levels, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<float> allowed(levels.first_vertex.back());
-  const float most = static_cast<float>(random.uniform()) * 0.2f;
-  for (float& a : allowed) a = most * static_cast<float>(random.uniform());
-  return cut_within(levels, allowed);
-}
-
-StepBits bits_of(const Cut& cut) {
-  StepBits bits(cut.size());
-  for (std::size_t s = 0; s < cut.size(); ++s) bits.set(s, cut[s] != 0);
-  return bits;
-}
+using test::random_cut;
 
 using Soup = std::vector<std::vector<float>>;  // [#corners], all numbers of a corner, triangles in order
 

@@ -21,19 +21,11 @@
 namespace fovea {
 namespace {
 
+using test::is_closed;
 using test::Leveled;
 using test::leveled;
 
 LevelCamera camera_from(Vec3d eye, Vec3d target = {}) { return {view_from(eye, target, 40), 800, 600}; }
-
-bool is_closed(const MultiTessellation& levels, const Cut& cut) {
-  for (std::size_t s = 0; s < cut.size(); ++s) {
-    for (const std::uint32_t needed : levels.needs_of(s)) {
-      if (cut[s] != 0 && cut[needed] == 0) return false;
-    }
-  }
-  return true;
-}
 
 /// A model with all that a level is read by.
 struct Selected {
@@ -55,8 +47,7 @@ struct Selected {
   }
   /// Corners of the triangles that are left.
   std::vector<Vec3f> corners(const Cut& cut) const {
-    StepBits taken(cut.size());
-    for (std::size_t s = 0; s < cut.size(); ++s) taken.set(s, cut[s] != 0);
+    const StepBits taken = test::bits_of(cut);
     Contraction contraction(hierarchy);
     contraction.begin(taken);
     contraction.advance(contraction.total_work());

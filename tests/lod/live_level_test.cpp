@@ -13,6 +13,7 @@ namespace {
 
 using test::Leveled;
 using test::leveled;
+using test::random_cut;
 
 /// The triangles of a live mesh that are there, as a mesh.
 TriMesh snapshot(const LiveLevel& live, const TriMesh& source) {
@@ -34,14 +35,6 @@ TriMesh snapshot(const LiveLevel& live, const TriMesh& source) {
     }
   }
   return out;
-}
-
-Cut random_cut(const MultiTessellation& levels, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<float> allowed(levels.first_vertex.back());
-  const float most = static_cast<float>(random.uniform()) * 0.2f;
-  for (float& a : allowed) a = most * static_cast<float>(random.uniform());
-  return cut_within(levels, allowed);
 }
 
 TEST(LiveLevel, GoesToAnyCutFromAnyOther) {
