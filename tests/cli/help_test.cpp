@@ -80,10 +80,8 @@ TEST(Suggestions, UnknownVerb) {
 }
 
 TEST(Suggestions, NothingNearListsTheVerbs) {
-  EXPECT_THAT(
-      fovea({"qqqqqqqqqq"}).err,
-      HasSubstr(
-          "verbs are: info, simplify, lods, focus, texture, saliency, segment, compare, render, sample"));
+  EXPECT_THAT(fovea({"qqqqqqqqqq"}).err, HasSubstr("verbs are: info, simplify, lods, focus, fit, texture, "
+                                                   "saliency, segment, fly, compare, render, sample"));
 }
 
 TEST(Suggestions, FlagBeforeTheVerb) {
@@ -104,7 +102,7 @@ TEST(Suggestions, AnOptionOfOtherVerbs) {
   for (const char* option : {"--quantize", "--no-quantize"}) {
     EXPECT_EQ(fovea({"info", "a.glb", option}).err,
               "fovea: error: unknown option '" + std::string(option) +
-                  "'\nhint: --quantize is an option of simplify, lods, focus, texture, sample\n");
+                  "'\nhint: --quantize is an option of simplify, lods, focus, fit, texture, sample\n");
   }
 }
 

@@ -1,5 +1,5 @@
-// Simplifies models with the command line, makes levels of detail of them, shrinks their textures, writes saliency
-// and clusters into them, and puts every output through the Khronos glTF validator.
+// Simplifies models with the command line, makes levels of detail of them, fits them into bytes, shrinks their textures,
+// writes saliency and clusters into them, and puts every output through the Khronos glTF validator.
 //
 //   node validate.mjs FOVEA OUTPUT-FOLDER sample NAME     a sample model, in every way of writing
 //   node validate.mjs FOVEA OUTPUT-FOLDER corpus FOLDER   every glTF file of FOVEA_DATA/FOLDER: at 10 %, with levels,
@@ -83,6 +83,15 @@ function mapFault(input, output, verb, kind) {
     after > before || (before > 0 && after === 0) ? `${after} triangles instead of ${before}` : null);
 }
 
+// Into a share of the bytes that it has.
+function fitFault(input, output, share, ...options) {
+  const bytes = Math.ceil(share * fs.statSync(input).size);
+  return faultOf(input, output, ['fit', '--bytes', String(bytes), '--view-size', '128', ...options], () => {
+    const taken = fs.statSync(output).size;
+    return taken > bytes ? `${taken} bytes instead of ${bytes}` : null;
+  });
+}
+
 function textureFault(input, output, ...options) {
   return faultOf(input, output, ['texture', ...options], (before, after) =>
     after > before || (before > 0 && after === 0) ? `${after} triangles instead of ${before}` : null);
@@ -134,6 +143,10 @@ async function sampleFaults() {
   ]) {
     const output = path.join(outputFolder, `${name}-${suffix}`);
     faults += await report(path.basename(output), textureFault(input, output, ...options));
+  }
+  for (const [suffix, ...options] of [['fit.glb'], ['fit-webp.glb', '--texture-format', 'webp', '--compression', 'meshopt']]) {
+    const output = path.join(outputFolder, `${name}-${suffix}`);
+    faults += await report(path.basename(output), fitFault(input, output, 0.1, ...options));
   }
   for (const [suffix, ...options] of [
     ['lods.glb', ...quick],
