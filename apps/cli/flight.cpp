@@ -110,27 +110,29 @@ class Flight {
         frames[i].ratio = ratios[r];
         frames[i].frame = static_cast<int>(i);
       }
-      with_processor(budget, frames, report.strip, tell);
+      with_processor(budget, frames, tell);
       if (card_) with_card(budget, frames);
       report.frames.insert(report.frames.end(), frames.begin(), frames.end());
     }
+    strip_.insert(strip_.begin(), originals());
+    report.strip = std::move(strip_);
     return report;
   }
 
  private:
-  /// Calls `look(camera, frame)` along the way, after some frames that are not reported.
+  /// Calls `look(i, frame)` along the way, after some frames that are not reported.
   template <class Look>
   void go(std::vector<FrameReport>& frames, Look&& look) {
     FrameReport unreported;
-    for (int i = 0; i < kWarmUp; ++i) look(cameras_.front(), unreported);
-    for (std::size_t i = 0; i < frames.size(); ++i) look(cameras_[i], frames[i]);
+    for (int i = 0; i < kWarmUp; ++i) look(0, unreported);
+    for (std::size_t i = 0; i < frames.size(); ++i) look(i, frames[i]);
   }
 
-  void with_processor(const LevelBudget& budget, std::vector<FrameReport>& frames,
-                      std::vector<std::vector<Image8>>& strip, const auto& tell) {
+  void with_processor(const LevelBudget& budget, std::vector<FrameReport>& frames, const auto& tell) {
     ViewDependentLod lod(selection_, processor_, static_cast<int>(options_.spread));
-    std::vector<Image8> pictures, originals;
-    go(frames, [&](const LevelCamera& camera, FrameReport& frame) {
+    std::vector<Image8>& pictures = strip_.emplace_back();
+    go(frames, [&](std::size_t i, FrameReport& frame) {
+      const LevelCamera& camera = cameras_[i];
       bool is_new = false;
       frame.cpu_update_ms = milliseconds([&] { is_new = lod.update(camera, budget); });
       frame.triangles = processor_.level().triangle_count();
@@ -139,25 +141,39 @@ class Flight {
         frame.full_draw_ms = draw_milliseconds([&] { renderer_->draw(camera); });
       }
       if (is_new) frame.cracks = cracks_.count(selection_.taken());
-      const auto at = static_cast<std::size_t>(&camera - cameras_.data());
-      if (&frame != &frames[at]) return;
-      tell(static_cast<double>(at) / static_cast<double>(frames.size()));
-      if (options_.judge_every == 0 || at % static_cast<std::size_t>(options_.judge_every) != 0) return;
-      auto [picture, scores] = judge_.judge(at, hierarchy_, processor_.level());
-      frame.scores = scores;
-      pictures.push_back(std::move(picture));
-      if (strip.empty()) originals.push_back(judge_.reference(at).picture().color);
+      tell(static_cast<double>(i) / static_cast<double>(frames.size()));
     });
-    if (strip.empty()) strip.push_back(std::move(originals));
-    strip.push_back(std::move(pictures));
+    if (options_.judge_every > 0) look_at(budget, frames, pictures);
+  }
+
+  /// Flies again, and compares some of the frames with the original.
+  void look_at(const LevelBudget& budget, std::vector<FrameReport>& frames, std::vector<Image8>& pictures) {
+    ViewDependentLod lod(selection_, processor_, static_cast<int>(options_.spread));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      lod.update(cameras_[i], budget);
+      if (i % static_cast<std::size_t>(options_.judge_every) != 0) continue;
+      auto [picture, scores] = judge_.judge(i, hierarchy_, processor_.level());
+      frames[i].scores = scores;
+      pictures.push_back(std::move(picture));
+      context_.advance_or_throw("judge", static_cast<double>(i) / static_cast<double>(frames.size()));
+    }
+  }
+
+  /// What the strip shows above all levels.
+  std::vector<Image8> originals() {
+    std::vector<Image8> pictures;
+    for (std::size_t i = 0; options_.judge_every > 0 && i < cameras_.size();
+         i += static_cast<std::size_t>(options_.judge_every))
+      pictures.push_back(judge_.reference(i).picture().color);
+    return pictures;
   }
 
   void with_card(const LevelBudget& budget, std::vector<FrameReport>& frames) {
     ViewDependentLod lod(selection_, *card_, static_cast<int>(options_.spread));
-    go(frames, [&](const LevelCamera& camera, FrameReport& frame) {
+    go(frames, [&](std::size_t i, FrameReport& frame) {
       bool is_new = false;
-      frame.gpu_update_ms = draw_milliseconds([&] { is_new = lod.update(camera, budget); });
-      frame.gpu_draw_ms = draw_milliseconds([&] { renderer_->draw(camera, *card_); });
+      frame.gpu_update_ms = draw_milliseconds([&] { is_new = lod.update(cameras_[i], budget); });
+      frame.gpu_draw_ms = draw_milliseconds([&] { renderer_->draw(cameras_[i], *card_); });
       if (!is_new) return;
       processor_.begin(selection_.taken());
       processor_.advance(processor_.total_work());
@@ -183,6 +199,7 @@ class Flight {
   Contraction processor_;
   std::unique_ptr<GpuContraction> card_;
   std::unique_ptr<LevelRenderer> renderer_;
+  std::vector<std::vector<Image8>> strip_;  // of each ratio so far
 };
 
 }  // namespace
