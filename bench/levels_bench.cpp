@@ -6,15 +6,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "fovea/base/error.h"
 #include "fovea/base/random.h"
 #include "fovea/judge/surface_distance.h"
 #include "fovea/lod/cut.h"
@@ -24,7 +21,7 @@
 #include "fovea/surface/closest_point.h"
 #include "fovea/surface/pose.h"
 #include "fovea/surface/scene_surface.h"
-#include "fovea/surface/topology.h"
+#include "level_check.h"
 #include "subjects.h"
 
 namespace fovea::bench {
@@ -141,15 +138,16 @@ void print_regions(const std::string& name, const Leveled& model, const Context&
 
 /// Random balls, errors and shares: whether every level is a mesh as whole as the original.
 void print_queries(const std::string& name, const Leveled& model, int count) {
+  constexpr int kWhole = 50;  // Of so many levels one is looked at as a whole.
   const Surface original = scene_surface(model.original, rest_pose(model.original)).surface;
   const double diagonal = bounds(model.original).diagonal();
-  const ClosestPoint to_original(original);
-  std::size_t open_before = 0;
-  for (const Mesh& mesh : model.original.meshes) open_before += count_edges(mesh.surface).boundary;
   Random random(11);
   LiveLevel live(model.original, model.levels);
-  int broken = 0, more_open = 0, doubled = 0;
-  std::uint64_t turned = 0, triangles = 0;
+  LevelCheck check(model.original, model.levels, live);
+  const LevelFaults before = check.update();
+  LevelFaults most, all;
+  int different = 0;
+  std::uint64_t triangles = 0;
   double query = 0, jump = 0, slowest_query = 0;
   for (int i = 0; i < count; ++i) {
     const Vec3d center =
@@ -164,36 +162,20 @@ void print_queries(const std::string& name, const Leveled& model, int count) {
     query += took;
     slowest_query = std::max(slowest_query, took);
     jump += seconds([&] { live.go_to(cut); });
-    const Model level = level_of(model.original, model.levels, cut);
-    std::size_t open = 0;
-    std::set<std::array<VertexId, 3>> seen;
-    for (const Mesh& mesh : level.meshes) {
-      try {
-        check(mesh.surface);
-      } catch (const Error&) {
-        ++broken;
-      }
-      open += count_edges(mesh.surface).boundary;
-      seen.clear();
-      for (std::array<VertexId, 3> t : mesh.surface.triangles) {
-        std::sort(t.begin(), t.end());
-        doubled += !seen.insert(t).second;
-      }
-    }
-    more_open += open > open_before;
-    const Surface made = scene_surface(level, rest_pose(level)).surface;
-    triangles += made.triangles.size();
-    for (const auto& t : made.triangles) {
-      const Vec3d a = made.position(t[0]), b = made.position(t[1]), c = made.position(t[2]);
-      const auto& o = original.triangles[to_original.nearest((a + b + c) / 3.0).triangle];
-      const Vec3d before = cross(original.position(o[1]) - original.position(o[0]),
-                                 original.position(o[2]) - original.position(o[0]));
-      turned += dot(normalized(cross(b - a, c - a)), normalized(before)) < -0.5;
-    }
+    const LevelFaults faults = check.update();
+    most.cracks = std::max(most.cracks, faults.cracks);
+    most.non_manifold = std::max(most.non_manifold, faults.non_manifold);
+    most.doubled = std::max(most.doubled, faults.doubled);
+    all.turned += faults.turned;
+    all.alone += faults.alone;
+    triangles += live.triangle_count();
+    if (i % kWhole == 0) different += !check.is_same(level_of(model.original, model.levels, cut));
   }
-  fmt::print("| {} | {} | {} | {} | {} | {:.4f} % | {:.1f} | {:.1f} | {:.1f} |\n", name, count, broken,
-             more_open, doubled, 100 * static_cast<double>(turned) / static_cast<double>(triangles),
-             1e3 * query / count, 1e3 * slowest_query, 1e3 * jump / count);
+  fmt::print("| {} | {} | {} | {} | {} : {} | {} : {} | {:.4f} % | {:.5f} % | {:.1f} | {:.1f} | {:.1f} |\n",
+             name, count, different, most.cracks, most.non_manifold, before.non_manifold, most.doubled,
+             before.doubled, 100 * static_cast<double>(all.turned) / static_cast<double>(triangles),
+             100 * static_cast<double>(all.alone) / static_cast<double>(triangles), 1e3 * query / count,
+             1e3 * slowest_query, 1e3 * jump / count);
 }
 
 /// A focus that moves a little from query to query, as an eye does.
@@ -245,8 +227,9 @@ int run(std::vector<std::string> names) {
     print_motion(subject.name, model);
     if (queries > 0) {
       fmt::print(
-          "\n| model | queries | broken | more open edges | doubled triangles | turned | query ms | slowest "
-          "| change ms |\n");
+          "\n| model | queries | unlike the level read whole | cracks | non-manifold edges, original's | "
+          "doubled "
+          "triangles, original's | turned | alone | query ms | slowest | change ms |\n");
       print_queries(subject.name, model, queries);
     }
     fmt::print("\n| model | allowed | triangles | lost | added | mean | measured : allowed |\n");

@@ -10,6 +10,7 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/random.h"
+#include "fovea/lod/live_level.h"
 #include "lod/leveled.h"
 #include "support/meshes.h"
 
@@ -79,6 +80,67 @@ TEST(Cut, AnySetThatIsClosedIsAMeshLikeTheOriginal) {
       const TriMesh level = level_of(model.original, model.levels, cut).meshes[0].surface;
       check(level);
       EXPECT_EQ(level.face_count(), triangles_of(model.levels, cut)) << name;
+    }
+  }
+}
+
+/// What each vertex of a mesh has become.
+std::vector<VertexId> targets(const MultiTessellation& levels, const Cut& cut) {
+  std::vector<VertexId> target(levels.first_vertex.back());
+  for (std::size_t v = 0; v < target.size(); ++v) target[v] = VertexId{v};
+  for (std::size_t s = cut.size(); s-- > 0;) {
+    const CollapseStep& step = levels.record.steps[s];
+    if (cut[s] != 0 && step.kind == StepKind::collapse)
+      target[step.removed.index()] = target[step.kept.index()];
+  }
+  return target;
+}
+
+/// A sheet that has lost many of its triangles: full of borders, flaps and loose pieces.
+TriMesh tattered(std::uint64_t seed) {
+  const TriMesh sheet = test::wavy_grid(16, 16, 0.1);
+  SplitPart part;
+  part.positions = sheet.positions;
+  Random random(seed);
+  for (const auto& t : sheet.triangles) {
+    if (random.uniform() < 0.3) continue;
+    for (const VertexId v : t) part.indices.push_back(v.value);
+  }
+  return test::shuffled(test::weld_part(part));
+}
+
+TEST(Cut, NothingOpensThatWasClosed) {
+  // An edge of an odd number of triangles is what such edges of the original have become; and a level that
+  // goes from cut to cut, where each step changes the triangles that it knows, is the one read from the
+  // record.
+  for (const Placement placement : {Placement::optimal, Placement::half_edge}) {
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      const TriMesh mesh = tattered(seed);
+      const Leveled model = leveled(test::model_of(mesh), 0, 2, placement);
+      LiveLevel live(model.original, model.levels);
+      for (std::uint64_t i = 0; i < 10; ++i) {
+        const Cut cut = random_cut(model.levels, i, i % 2 == 0 ? 0.9 : 0.6);
+        live.go_to(cut);
+        TriMesh level;
+        for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+          if (live.is_there(0, FaceId{f})) level.triangles.push_back(live.mesh(0).triangles[f]);
+        }
+        const std::vector<VertexId> target = targets(model.levels, cut);
+        std::set<std::pair<std::uint32_t, std::uint32_t>> borders;
+        for (const auto& [edge, uses] : edge_uses(mesh)) {
+          if (uses % 2 == 1) borders.insert(std::minmax(target[edge.first].value, target[edge.second].value));
+        }
+        for (const auto& [edge, uses] : edge_uses(level))
+          EXPECT_TRUE(uses % 2 == 0 || borders.contains(edge)) << seed << " " << i;
+        const TriMesh read = level_of(model.original, model.levels, cut).meshes[0].surface;
+        ASSERT_EQ(read.face_count(), level.face_count());
+        for (std::size_t f = 0; f < read.face_count(); ++f) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_EQ(read.positions[read.triangles[f][k].index()],
+                      live.mesh(0).positions[level.triangles[f][k].index()]);
+          }
+        }
+      }
     }
   }
 }

@@ -15,9 +15,10 @@ namespace fovea {
 /// 1998).
 ///
 /// A step replaces the triangles around an edge by those around a vertex. It needs the steps before it that
-/// made one of the triangles it replaces, and no others. Any set of steps that holds all that its members
-/// need gives a mesh without cracks, in which each triangle is as it was at some time of the simplification:
-/// so some places can be coarse and others fine (lod/cut.h).
+/// made one of the triangles it replaces, or removed one at its ends and left none there that would tell of
+/// it, and no others. Any set of steps that holds all that its members need gives a mesh without cracks, in
+/// which each triangle is as it was at some time of the simplification: so some places can be coarse and
+/// others fine (lod/cut.h).
 ///
 /// Vertices are numbered through over all meshes of the model, see `first_vertex`.
 struct MultiTessellation {

@@ -111,7 +111,7 @@ void StepOrder::link_corners() {
   merged_into_.resize(vertices);
   std::iota(merged_into_.begin(), merged_into_.end(), 0u);
   made_by_.assign(faces, kNever);
-  stripped_by_.assign(vertices, kNever);
+  stripped_by_.resize(vertices);
   face_mark_.assign(faces, 0);
   vertex_mark_.assign(vertices, 0);
   for (std::uint32_t c = 0; c < 3 * faces; ++c) {
@@ -161,7 +161,7 @@ void StepOrder::finish() {
   const CollapseRecord& record = levels_.record;
   const CollapseStep& step = record.steps[step_];
   for (std::size_t i = before().faces_end; i < step.faces_end; ++i)
-    remove_face(first_face_[step.mesh] + record.removed_faces[i].value);
+    alive_[first_face_[step.mesh] + record.removed_faces[i].value] = 0;
   if (step.kind == StepKind::collapse) merge(step, levels_.vertex(step.mesh, step.removed), kept_);
   new_faces_.clear();
   for (const std::uint32_t f : old_faces_) {
@@ -170,6 +170,7 @@ void StepOrder::finish() {
     made_by_[f] = static_cast<std::uint32_t>(step_);
   }
   note_corners();
+  note_stripped();
 }
 
 /// Whether a collapse changes triangles at b that are not at a.
@@ -207,11 +208,6 @@ void StepOrder::add_old_face(std::uint32_t f) {
   old_faces_.push_back(f);
 }
 
-void StepOrder::remove_face(std::uint32_t f) {
-  alive_[f] = 0;
-  for (const std::uint32_t v : faces_[f]) stripped_by_[v] = static_cast<std::uint32_t>(step_);
-}
-
 /// Gives a's corners to b, which moves.
 void StepOrder::merge(const CollapseStep& step, std::uint32_t a, std::uint32_t b) {
   for_corners(a, [&](std::uint32_t c) { faces_[c / 3][c % 3] = b; });
@@ -227,15 +223,20 @@ void StepOrder::merge(const CollapseStep& step, std::uint32_t a, std::uint32_t b
   if (step.moved) positions_[b] = step.position;
 }
 
-/// The steps that made the faces around the edge, or removed one at its ends: without these a vertex would
-/// have triangles here that this step does not know.
+/// The steps that made the faces that this one replaces, or removed one at its ends, or at a vertex of what
+/// vanishes, and left none there that would tell of it: without these a vertex would have triangles that this
+/// step does not know.
 void StepOrder::note_needs() {
   const CollapseStep& step = levels_.record.steps[step_];
   needs_.clear();
   for (const std::uint32_t f : old_faces_) needs_.push_back(made_by_[f]);
+  const auto add_stripped = [&](std::uint32_t v) {
+    needs_.insert(needs_.end(), stripped_by_[v].begin(), stripped_by_[v].end());
+  };
   if (step.kind == StepKind::collapse) {
-    for (const VertexId v : {step.removed, step.kept})
-      needs_.push_back(stripped_by_[levels_.vertex(step.mesh, v)]);
+    for (const VertexId v : {step.removed, step.kept}) add_stripped(levels_.vertex(step.mesh, v));
+  } else {
+    for (const std::uint32_t f : old_faces_) std::ranges::for_each(faces_[f], add_stripped);
   }
   std::sort(needs_.begin(), needs_.end());
   needs_.erase(std::unique(needs_.begin(), needs_.end()), needs_.end());
@@ -255,6 +256,30 @@ void StepOrder::note_corners() {
     for (const std::uint32_t v : faces_[f]) note(v);
   }
   levels_.corners_end.push_back(static_cast<std::uint32_t>(levels_.corners.size()));
+}
+
+/// Notes at the ends of each edge that stays and lost a triangle, if it has no new one that would tell of it.
+void StepOrder::note_stripped() {
+  const CollapseStep& step = levels_.record.steps[step_];
+  const std::uint32_t gone =
+      step.kind == StepKind::collapse ? levels_.vertex(step.mesh, step.removed) : kInvalid;
+  const auto has_new = [&](std::uint32_t v, std::uint32_t w) {
+    return std::ranges::any_of(new_faces_, [&](std::uint32_t f) {
+      return std::ranges::count(faces_[f], v) > 0 && std::ranges::count(faces_[f], w) > 0;
+    });
+  };
+  for (const std::uint32_t f : old_faces_) {
+    if (alive_[f]) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = faces_[f][k], w = faces_[f][(k + 1) % 3];
+      if (v == gone || w == gone || has_new(v, w)) continue;
+      for (const std::uint32_t end : {v, w}) {
+        std::vector<std::uint32_t>& stripped = stripped_by_[end];
+        if (stripped.empty() || stripped.back() != step_)
+          stripped.push_back(static_cast<std::uint32_t>(step_));
+      }
+    }
+  }
 }
 
 }  // namespace fovea

@@ -49,10 +49,10 @@ class StepOrder {
   std::uint32_t vertex_now(std::uint32_t v);
   void add_old_faces(std::uint32_t v);
   void add_old_face(std::uint32_t f);
-  void remove_face(std::uint32_t f);
   void merge(const CollapseStep& step, std::uint32_t a, std::uint32_t b);
   void note_needs();
   void note_corners();
+  void note_stripped();
   /// The runs of the step in hand begin where those of this one end.
   CollapseStep before() const { return step_ > 0 ? levels_.record.steps[step_ - 1] : CollapseStep(); }
 
@@ -71,9 +71,9 @@ class StepOrder {
   std::vector<std::uint32_t> first_corner_, last_corner_, next_corner_;  // [#V], [#V], [#F × 3]
   std::vector<std::uint32_t> merged_into_;                               // [#V], itself if it is left
   std::vector<std::vector<std::vector<std::uint32_t>>>
-      home_;                                // [#meshes][#layers][#values], its original vertex
-  std::vector<std::uint32_t> made_by_;      // [#F], the step that made the face as it is
-  std::vector<std::uint32_t> stripped_by_;  // [#V], the last step that removed a face there
+      home_;                                             // [#meshes][#layers][#values], its original vertex
+  std::vector<std::uint32_t> made_by_;                   // [#F], the step that made the face as it is
+  std::vector<std::vector<std::uint32_t>> stripped_by_;  // [#V], steps that removed faces there unseen
 
   // Of the step in hand:
   std::size_t step_ = 0;
