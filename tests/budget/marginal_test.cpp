@@ -18,18 +18,18 @@ struct Problem {
       double bytes = random.uniform(1e5, 1e6), loss = 0, step = random.uniform(0.01, 1);
       const double shrink = random.uniform(0.5, 0.8), worse = random.uniform(1.3, 2.5);
       for (int i = 0; i < 14; ++i) {
-        bytes_[l].push_back(static_cast<std::uint64_t>(bytes));
-        loss_[l].push_back(loss);
+        bytes_of[l].push_back(static_cast<std::uint64_t>(bytes));
+        loss_of[l].push_back(loss);
         bytes *= shrink;
         loss += step;
         step *= worse;
       }
     }
     ladders.rungs = {14, 14};
-    ladders.bytes = [this](const Rungs& r) { return bytes_[0][r[0]] + bytes_[1][r[1]]; };
+    ladders.bytes = [this](const Rungs& r) { return bytes_of[0][r[0]] + bytes_of[1][r[1]]; };
     ladders.loss = [this, mixed](const Rungs& r) {
       ++asked;
-      const double a = loss_[0][r[0]], b = loss_[1][r[1]];
+      const double a = loss_of[0][r[0]], b = loss_of[1][r[1]];
       return a + b + mixed * std::sqrt(a * b);
     };
   }
@@ -37,8 +37,8 @@ struct Problem {
 
   JointLadders ladders;
   int asked = 0;
-  std::vector<std::uint64_t> bytes_[2];
-  std::vector<double> loss_[2];
+  std::vector<std::uint64_t> bytes_of[2];
+  std::vector<double> loss_of[2];
 };
 
 TEST(Marginal, PruningWalksTheHullWhereLossesAddUp) {
