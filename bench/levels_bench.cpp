@@ -1,7 +1,6 @@
 // What a record of levels costs and holds, as Markdown.
-// levels_bench [--queries N] [MODEL-NAME...]   building it, queries, errors against the original, and N
-// random
-//     queries whose levels are looked at; minutes
+// levels_bench [--queries N] [MODEL-NAME...]   building it, files, queries, errors against the original,
+//     and N random queries whose levels are looked at; minutes
 
 #include <fmt/format.h>
 
@@ -13,8 +12,10 @@
 #include <vector>
 
 #include "fovea/base/random.h"
+#include "fovea/io/write.h"
 #include "fovea/judge/surface_distance.h"
 #include "fovea/lod/cut.h"
+#include "fovea/lod/levels_file.h"
 #include "fovea/lod/live_level.h"
 #include "fovea/lod/multi_tessellation.h"
 #include "fovea/simplify/simplify.h"
@@ -38,9 +39,7 @@ double seconds(const auto& work) {
 }
 
 /// A model with all of its levels.
-struct Leveled {
-  Model original;
-  MultiTessellation levels;
+struct Leveled : LeveledModel {
   double simplify_seconds = 0, build_seconds = 0;
 };
 
@@ -58,6 +57,15 @@ Leveled make_leveled(const Subject& subject, Context& context) {
   return result;
 }
 
+/// Steps of the longest chain in which each needs the one before.
+std::uint32_t longest_chain(const MultiTessellation& levels) {
+  std::vector<std::uint32_t> chain(levels.step_count(), 1);
+  for (std::size_t s = 0; s < chain.size(); ++s) {
+    for (const std::uint32_t needed : levels.needs_of(s)) chain[s] = std::max(chain[s], chain[needed] + 1);
+  }
+  return chain.empty() ? 0 : std::ranges::max(chain);
+}
+
 void print_costs(const std::string& name, const Leveled& model) {
   const MultiTessellation& levels = model.levels;
   const auto triangles = static_cast<double>(levels.triangles);
@@ -66,10 +74,28 @@ void print_costs(const std::string& name, const Leveled& model) {
   Cut cut;
   const double query = seconds([&] { cut = cut_within(levels, allowed); });
   const double read = seconds([&] { level_of(model.original, levels, cut); });
-  fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {:.0f} | {:.1f} | {:.0f} | {} |\n", name, levels.triangles,
-             levels.step_count(), model.simplify_seconds, model.build_seconds,
-             static_cast<double>(levels.bytes()) / triangles, 1e3 * query, 1e3 * read,
+  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.2f} | {:.0f} | {:.1f} | {:.0f} | {} |\n", name,
+             levels.triangles, levels.step_count(), longest_chain(levels), model.simplify_seconds,
+             model.build_seconds, static_cast<double>(levels.bytes()) / triangles, 1e3 * query, 1e3 * read,
              triangles_of(levels, cut));
+}
+
+/// A file of all levels: its size, and how long it takes to make and to read.
+void print_file(const std::string& name, const Leveled& model, Context& context) {
+  const ModelCounts whole = counts(model.original);
+  const auto images = static_cast<double>(whole.image_bytes),
+             triangles = static_cast<double>(whole.triangles);
+  for (const bool quantize : {false, true}) {
+    WriteOptions options;
+    options.quantize = quantize;
+    std::vector<std::byte> file;
+    const double encode = seconds([&] { file = encode_levels(model, options, context); });
+    const double decode = seconds([&] { read_levels(file, name, {}, {}, context); });
+    const auto bytes = static_cast<double>(file.size());
+    fmt::print("| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.1f} | {:.2f} | {:.2f} |\n", name, whole.triangles,
+               counts(coarsest(model)).triangles, quantize ? "yes" : "no", 1e-6 * bytes, 1e-6 * images,
+               (bytes - images) / triangles, encode, decode);
+  }
 }
 
 /// What a level is off by, against what its record says.
@@ -217,8 +243,14 @@ int run(std::vector<std::string> names) {
   context.threads = kThreads;
   for (const Subject& subject : subjects) {
     const Leveled model = make_leveled(subject, context);
-    fmt::print("| model | triangles | steps | simplify s | build s | bytes | query ms | read ms | left |\n");
+    fmt::print(
+        "| model | triangles | steps | longest chain | simplify s | build s | bytes | query ms | read ms | "
+        "left |\n");
     print_costs(subject.name, model);
+    fmt::print(
+        "\n| model | triangles | coarsest | quantized | file, MB | images, MB | the rest, bytes per triangle "
+        "| encode s | decode s |\n");
+    print_file(subject.name, model, context);
     fmt::print(
         "\n| model | elsewhere | factor | triangles in the ball | left without it | left | allowed | lost | "
         "added |\n");

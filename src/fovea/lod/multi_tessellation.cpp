@@ -1,6 +1,7 @@
 #include "fovea/lod/multi_tessellation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -78,8 +79,10 @@ class ErrorMeter {
   std::vector<Sample> samples_;
 };
 
-/// Every vertex and the middle of every edge, each with one of its faces.
+/// Every vertex and the middle of every edge, each with one of its faces; of edges that are longer than the
+/// others several points, as far from each other as others are long.
 void ErrorMeter::choose_points() {
+  constexpr double kMost = 8;
   first_point_.assign(order_.faces().size(), kInvalid);
   const auto add = [&](Vec3d p, std::uint32_t face) {
     next_point_.push_back(std::exchange(first_point_[face], static_cast<std::uint32_t>(points_at_.size())));
@@ -90,11 +93,18 @@ void ErrorMeter::choose_points() {
   }
   for (std::size_t m = 0; m < original_.meshes.size(); ++m) {
     const std::vector<HalfEdge> half_edges = sorted_half_edges(original_.meshes[m].surface.triangles);
+    const auto ends = [&](const HalfEdge& e) {
+      const std::array<std::uint32_t, 3>& face = order_.faces()[order_.first_face(m) + e.triangle()];
+      return std::pair(order_.position(face[e.low_corner() % 3]), order_.position(face[e.high_corner() % 3]));
+    };
+    double mean = 0;  // of the length of edges
+    for (const HalfEdge& e : half_edges)
+      mean += length(ends(e).second - ends(e).first) / static_cast<double>(half_edges.size());
     for_each_edge(half_edges, [&](std::span<const HalfEdge> edge) {
-      const HalfEdge& e = edge.front();
-      const std::uint32_t face = order_.first_face(m) + e.triangle();
-      const auto end = [&](std::size_t corner) { return order_.position(order_.faces()[face][corner % 3]); };
-      add((end(e.low_corner()) + end(e.high_corner())) * 0.5, face);
+      const auto [low, high] = ends(edge.front());
+      const double count = mean > 0 ? std::clamp(std::floor(length(high - low) / mean), 1.0, kMost) : 1;
+      for (double i = 1; i <= count; ++i)
+        add(low + (high - low) * (i / (count + 1)), order_.first_face(m) + edge.front().triangle());
     });
   }
 }
