@@ -109,7 +109,7 @@ bool LevelCheck::is_same(const Model& level) const {
 std::uint32_t LevelCheck::triangle(std::uint32_t mesh, const Corners& corners) {
   std::array<std::uint32_t, 3> v{};
   for (std::size_t k = 0; k < 3; ++k) v[k] = levels_.vertex(mesh, corners[k]);
-  std::ranges::rotate(v, std::ranges::min_element(v));
+  std::rotate(v.begin(), std::ranges::min_element(v), v.end());
   const std::uint32_t number = triangle_numbers_.insert(v);
   if (number < triangles_.size()) return number;
   Triangle& made = triangles_.emplace_back();

@@ -51,14 +51,15 @@ class Fitter {
     std::vector<JointPoint> path = prune(ladders(), most);
     FitResult result;
     for (const JointPoint& point : path) result.path.push_back(fit_point(point));
-    const JointPoint& end = path.back();
     if (options_.match != FitMetric::none) {
       match(path, result);
     } else {
-      result.reached = end.bytes <= most;
+      result.reached = path.back().bytes <= most;
+      const bool is_whole = path.size() == 1;
+      const JointPoint end = result.reached && !is_whole ? best_within(path.back()) : path.back();
       result.model = combined(end.rungs);
-      result.chosen = result.path.back();
-      if (result.reached && path.size() > 1) spend(end, result);
+      result.chosen = fit_point(end);
+      if (result.reached && !is_whole) spend(end, result);
     }
     result.pictures = drawn_;
     return result;
@@ -156,6 +157,22 @@ class Fitter {
          write_gltf(model, options_.binary, options_.stem, options_.write, scratch_).files)
       bytes += file.bytes.size();
     return bytes;
+  }
+
+  /// The best of a point and of all sizes of images with as many triangles as fit beside them: where images
+  /// come in few sizes (PNG), a single step down can be too large to be taken, and two of them worth it.
+  JointPoint best_within(JointPoint best) {
+    for (std::size_t t = 0; t < textures_.size(); ++t) {
+      const std::uint64_t images = image_bytes(textures_[t]);
+      const auto fits = [&](const MeshRung& rung) { return rung.bytes + images <= *options_.bytes; };
+      const auto mesh = std::ranges::find_if(meshes_, fits);
+      if (mesh == meshes_.end()) continue;
+      const Rungs rungs{static_cast<std::size_t>(mesh - meshes_.begin()), t};
+      if (rungs == best.rungs) continue;
+      const double lost = loss(combined(rungs));
+      if (lost < best.loss) best = {rungs, mesh->bytes + images, lost};
+    }
+    return best;
   }
 
   /// Tries the numbers of triangles around a point with all other bytes spent on images.

@@ -56,9 +56,10 @@ struct FitResult {
 ///
 /// The model is simplified once, and its images are stored in ways that take less and less (shrink.h); both
 /// make ladders, sizes in geometric progression, bytes as they will be written. Marginal analysis by pruning
-/// (marginal.h) walks down from the original. Around the point where it comes below the budget, neighbouring
-/// numbers of triangles are tried with all other bytes spent on images, then more triangles as far as there
-/// is room. With `match` the walk goes on to the end, and the last point is taken that is as like as asked.
+/// (marginal.h) walks down from the original. The point where it comes below the budget is held against every
+/// size of images with as many triangles as fit beside them; around the best of these, neighbouring numbers
+/// of triangles are tried with all other bytes spent on images, then more triangles as far as there is room.
+/// With `match` the walk goes on to the end, and the last point is taken that is as like as asked.
 ///
 /// No texels move and nothing is baked anew. Throws Error(usage) for options that do not go together,
 /// Error(unsupported) without triangles that anything shows, Error(cancelled). Cost: one `simplify`, textures
