@@ -21,6 +21,8 @@ namespace {
 
 constexpr double kFewerTriangles = 0.7;  // from rung to rung
 constexpr double kFewestTriangles = 0.005;
+/// From so many triangles on pictures decide which go (simplify.h); up to there quadrics do as well.
+constexpr double kMostByPictures = 12000;
 constexpr double kFewerImageBytes = 0.6;
 constexpr double kFewestImageBytes = 0.008;
 /// Bytes of JSON that may come when images get other sizes and names of formats.
@@ -75,8 +77,12 @@ class Fitter {
   void make_mesh_ladder() {
     const std::uint64_t total = counts(model_).triangles;
     SimplifyOptions simplify_options;
-    simplify_options.metric = Metric::quadric;
     simplify_options.ratio = kFewestTriangles;
+    const double fewest = std::max(1.0, kFewestTriangles * static_cast<double>(total));
+    if (fewest < kMostByPictures) {
+      simplify_options.metric = Metric::image;
+      simplify_options.metric_from = kMostByPictures / fewest;
+    }
     record_ = simplify(model_, simplify_options, {}, context_).record;
     const double most =
         options_.triangles ? static_cast<double>(*options_.triangles) : static_cast<double>(total);
