@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "fovea/base/error.h"
@@ -25,8 +26,11 @@ constexpr double kFewestTriangles = 0.005;
 constexpr double kMostByPictures = 12000;
 constexpr double kFewerImageBytes = 0.6;
 constexpr double kFewestImageBytes = 0.008;
-/// Bytes of JSON that may come when images get other sizes and names of formats.
-constexpr std::uint64_t kJsonSlack = 256;
+/// Bytes of JSON that come at most when images get other sizes and formats (EXT_texture_webp).
+std::uint64_t json_slack(const Model& model) {
+  constexpr std::uint64_t kOnce = 128, kForEach = 96;
+  return kOnce + kForEach * (model.images.size() + model.textures.size());
+}
 
 std::uint64_t image_bytes(const Model& model) {
   std::uint64_t sum = 0;
@@ -44,6 +48,7 @@ class Fitter {
         pictures_(model, options.views, static_cast<int>(options.view_size), context) {
     scratch_.threads = context.threads;
     scratch_.seed = context.seed;
+    scratch_.progress = [this](std::string_view, double) { return !context_.cancelled(); };
     make_mesh_ladder();
     make_texture_ladder();
   }
@@ -128,9 +133,7 @@ class Fitter {
   JointLadders ladders() {
     JointLadders ladders;
     ladders.rungs = {meshes_.size(), textures_.size()};
-    ladders.bytes = [this](const Rungs& rungs) {
-      return meshes_[rungs[0]].bytes + image_bytes(textures_[rungs[1]]);
-    };
+    ladders.bytes = [this](const Rungs& rungs) { return file_bytes(rungs); };
     ladders.loss = [this](const Rungs& rungs) { return loss(combined(rungs)); };
     return ladders;
   }
@@ -157,6 +160,11 @@ class Fitter {
             psnr(point.loss)};
   }
 
+  /// Of rungs, at most.
+  std::uint64_t file_bytes(const Rungs& rungs) const {
+    const std::uint64_t more = rungs[1] > 0 ? json_slack(model_) : 0;
+    return meshes_[rungs[0]].bytes + image_bytes(textures_[rungs[1]]) + more;
+  }
   std::uint64_t file_bytes(const Model& model) {
     std::uint64_t bytes = 0;
     for (const OutputFile& file :
@@ -169,14 +177,11 @@ class Fitter {
   /// come in few sizes (PNG), a single step down can be too large to be taken, and two of them worth it.
   JointPoint best_within(JointPoint best) {
     for (std::size_t t = 0; t < textures_.size(); ++t) {
-      const std::uint64_t images = image_bytes(textures_[t]);
-      const auto fits = [&](const MeshRung& rung) { return rung.bytes + images <= *options_.bytes; };
-      const auto mesh = std::ranges::find_if(meshes_, fits);
-      if (mesh == meshes_.end()) continue;
-      const Rungs rungs{static_cast<std::size_t>(mesh - meshes_.begin()), t};
-      if (rungs == best.rungs) continue;
+      Rungs rungs{0, t};
+      while (rungs[0] < meshes_.size() && file_bytes(rungs) > *options_.bytes) ++rungs[0];
+      if (rungs[0] == meshes_.size() || rungs == best.rungs) continue;
       const double lost = loss(combined(rungs));
-      if (lost < best.loss) best = {rungs, mesh->bytes + images, lost};
+      if (lost < best.loss) best = {rungs, file_bytes(rungs), lost};
     }
     return best;
   }
@@ -188,8 +193,8 @@ class Fitter {
     std::size_t rung = end.rungs[0];
     const std::size_t first = rung > 0 ? rung - 1 : 0, last = std::min(rung + 1, meshes_.size() - 1);
     for (std::size_t m = first; shrinker_ && m <= last; ++m) {
-      if (meshes_[m].bytes + kJsonSlack >= most) continue;
-      const std::uint64_t room = most - meshes_[m].bytes - kJsonSlack;
+      if (meshes_[m].bytes + json_slack(model_) >= most) continue;
+      const std::uint64_t room = most - meshes_[m].bytes - json_slack(model_);
       const Shrunk images = shrinker_->within(room, false);
       if (images.bytes > room) continue;
       Model tried = with_images(meshes_[m].steps, images.model);
@@ -254,8 +259,8 @@ class Fitter {
   void refine_images(Model& model) {
     if (!shrinker_) return;
     const std::uint64_t images = image_bytes(model), rest = file_bytes(model) - images;
-    if (rest + kJsonSlack >= *options_.bytes) return;
-    const std::uint64_t room = *options_.bytes - rest - kJsonSlack;
+    if (rest + json_slack(model_) >= *options_.bytes) return;
+    const std::uint64_t room = *options_.bytes - rest - json_slack(model_);
     const Shrunk finer = shrinker_->within(room, true);
     Model tried = finer.model;
     tried.meshes = model.meshes;
