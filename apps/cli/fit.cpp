@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "fit_curve.h"
 #include "fovea/base/text.h"
 #include "fovea/budget/fit.h"
 #include "fovea/io/extension.h"
@@ -22,40 +23,16 @@ namespace fovea::cli {
 
 namespace {
 
-/// "500KB", "1.5 MB", "2MiB", "300000". Throws Error(usage) with the option.
-std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
-  constexpr std::array<std::pair<const char*, double>, 8> kUnits{{{"", 1},
-                                                                  {"b", 1},
-                                                                  {"kb", 1e3},
-                                                                  {"mb", 1e6},
-                                                                  {"gb", 1e9},
-                                                                  {"kib", 1024.0},
-                                                                  {"mib", 1024.0 * 1024},
-                                                                  {"gib", 1024.0 * 1024 * 1024}}};
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  std::string unit(static_cast<const char*>(end), text.data() + text.size());
-  std::erase(unit, ' ');
-  const auto at =
-      std::ranges::find(kUnits, lower_case(unit), [](const auto& u) { return std::string(u.first); });
-  const double bytes = at == kUnits.end() ? 0 : number * at->second;
-  if (error != std::errc() || !(bytes >= 1 && bytes < 1e15)) {
-    throw Error(ErrorKind::usage, fmt::format("'{}' is no number of bytes", printable(text)), option,
-                "write for example 500KB, 1.5MB or 300000");
-  }
-  return static_cast<std::uint64_t>(bytes);
-}
-
-void check_json_output(const std::filesystem::path& path, bool force) {
-  check_extension(path, "curves", {".json"});
+void check_curve_output(const std::filesystem::path& path, bool force) {
+  check_extension(path, "curves", {".json", ".html"});
   check_place(path, force);
 }
 
-Json to_json(const FitPoint& point) {
-  return {{"triangles", point.triangles},
-          {"image_bytes", point.image_bytes},
-          {"bytes", point.bytes},
-          {"psnr", number_json(point.psnr_db)}};
+/// An output of another kind than models.
+void write_text(const std::string& path, const std::string& text, bool force) {
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+  const OutputFile file{"", {bytes.begin(), bytes.end()}};
+  write_files(path, {&file, 1}, force);
 }
 
 class Fit : public Verb {
@@ -81,21 +58,26 @@ class Fit : public Verb {
     arguments.add(model_argument(input_));
     arguments.add(
         "Budget",
-        {{"bytes", "Bytes of the whole file at most, such as 500KB.", &bytes_, "size"},
+        {describe_bytes("Bytes of the whole file at most, such as 500KB.", bytes_),
          {"match",
           "Instead: the smallest file that is as like the original as this, psnr, ms-ssim or flip, in "
           "pictures of so many pixels (--view-size if left out).",
           &match_, "metric=value[@pixels]"}});
     arguments.add("Budget", describe(options_));
+    arguments.add("Views", describe(options_.views));
     arguments.add("Budget", {{"allow-miss", "Exit with 0 even if no file is that small or that like.",
                               &allow_miss_, ""}});
-    arguments.add("Output",
-                  {describe_output(output_),
-                   {"curve", "A .json file for the choices on the way: bytes, triangles, texels, likeness.",
-                    &curve_, "file"}});
-    arguments.add("Output", describe(options_.write));
+    arguments.add(
+        "Output",
+        {describe_output(output_),
+         {"curve",
+          "A file for what any number of bytes would give: .json, or .html with the curve drawn and "
+          "pictures along it.",
+          &curve_, "file"}});
+    arguments.add("Output", describe(options_.form.write));
     arguments.add("Limits", describe(read_options_));
-    need_format(arguments, options_.write);
+    need_format(arguments, options_.form.write);
+    need_views(arguments, options_.views);
   }
 
   int run(Session& session) override {
@@ -105,13 +87,21 @@ class Fit : public Verb {
     session.report["inputs"] = inputs_json({&input, 1});
     session.report["before"] = to_json(before);
     need_triangles(input);
-    FitResult result =
-        session.phase("fit", input.path, [&] { return fit(input.model, options_, session.context); });
+    std::optional<BudgetFit> fit;
+    session.phase("ladders", input.path, [&] { fit.emplace(input.model, options_, session.context); });
+    const FitResult result = session.phase(
+        "fit", input.path, [&] { return budget_ ? fit->within(*budget_) : fit->like(metric_, likeness_); });
+    if (result.cancelled) return write_cancelled(result, session);
     if (!result.reached && !allow_miss_) return miss(result, session);
+    FitCurve curve;
+    if (!curve_.empty()) curve = session.phase("curve", [&] { return make_curve(*fit, result); });
+    std::vector<CurvePicture> pictures;
+    if (lower_extension(curve_) == ".html")
+      pictures = session.phase("curve", [&] { return curve_pictures(*fit, curve.way, session.context); });
     const auto files = session.phase(
-        "write", [&] { return write_model(result.model, output_, options_.write, session.context); });
+        "write", [&] { return write_model(result.model, output_, options_.form.write, session.context); });
     const Snapshot after = snapshot(result.model, measure_output(files, result.model));
-    write_curve(result);
+    write_curve(curve, pictures);
     tell(session, before, after, result);
     return 0;
   }
@@ -119,22 +109,21 @@ class Fit : public Verb {
  private:
   void check_request() {
     check_input(input_);
-    check_output(output_, "small.glb", {input_}, options_.write.force, [&](const auto& path) {
+    check_output(output_, "small.glb", {input_}, options_.form.write.force, [&](const auto& path) {
       check_extension(path, "fitted models", {".glb", ".gltf"});
-      fovea::check_output(path, options_.write);
+      fovea::check_output(path, options_.form.write);
     });
     if (!curve_.empty()) {
-      check_output(curve_, "curve.json", {input_}, options_.write.force,
-                   [&](const auto& path) { check_json_output(path, options_.write.force); });
+      check_output(curve_, "curve.json", {input_}, options_.form.write.force,
+                   [&](const auto& path) { check_curve_output(path, options_.form.write.force); });
     }
-    options_.binary = lower_extension(output_) == ".glb";
-    options_.whole_path = !curve_.empty();
-    options_.stem = std::filesystem::path(output_).stem().string();
+    options_.form = file_form(output_, options_.form.write);
     if (bytes_.empty() == match_.empty()) {
       throw Error(ErrorKind::usage, bytes_.empty() ? "no budget is given" : "there are two targets", {},
                   "give --bytes, for example --bytes 500KB, or --match, for example --match ms-ssim=0.98");
     }
-    if (!bytes_.empty()) options_.bytes = parse_bytes("--bytes", bytes_);
+    if (!bytes_.empty()) budget_ = parse_bytes("--bytes", bytes_);
+    if (budget_ && curve_.empty()) options_.most_bytes = *budget_;
     if (!match_.empty()) parse_match();
   }
 
@@ -150,10 +139,10 @@ class Fit : public Verb {
     const auto metric = std::ranges::find(kMetrics, match_.substr(0, equals),
                                           [](const auto& m) { return std::string(m.first); });
     if (metric == kMetrics.end()) refuse();
-    options_.match = metric->second;
-    options_.match_value = parse_numbers("match", match_.substr(equals + 1, at - equals - 1), 1, 1)[0];
-    const double most = options_.match == FitMetric::psnr ? 200 : 1;
-    if (!(options_.match_value >= 0 && options_.match_value <= most)) refuse();
+    metric_ = metric->second;
+    likeness_ = parse_numbers("match", match_.substr(equals + 1, at - equals - 1), 1, 1)[0];
+    const double most = metric_ == FitMetric::psnr ? 200 : 1;
+    if (!(likeness_ >= 0 && likeness_ <= most)) refuse();
     if (at == std::string::npos) return;
     const double pixels = parse_numbers("match", match_.substr(at + 1), 1, 1)[0];
     if (!(pixels >= 64 && pixels <= 4096 && pixels == std::floor(pixels))) refuse();
@@ -162,20 +151,11 @@ class Fit : public Verb {
 
   /// Says what there is instead; nothing is written.
   int miss(const FitResult& result, Session& session) const {
-    const FitPoint& last = result.chosen;
     session.report["result"] = result_json(result);
-    if (options_.bytes) {
-      session.say(fmt::format("error: no file takes {} or less: the smallest has {}, with {} triangles",
-                              bytes_text(*options_.bytes), bytes_text(last.bytes),
-                              count_text(last.triangles)));
-    } else {
-      session.say("error: stored as asked, not even the original is that like itself");
-    }
-    session.say(
-        "hint: --allow-miss writes it all the same; --compression meshopt and --texture-format webp take "
-        "less");
-    constexpr int kMissed = 8;
-    return kMissed;
+    const std::string hint = "--compression meshopt and --texture-format webp take less";
+    if (budget_) return too_many_bytes(session, *budget_, result.chosen.bytes, hint);
+    session.say("error: stored as asked, not even the original is that like itself; nothing is written");
+    return target_code(session, false, false);
   }
 
   static Json result_json(const FitResult& result) {
@@ -187,12 +167,34 @@ class Fit : public Verb {
     return json;
   }
 
-  void write_curve(const FitResult& result) const {
+  /// The best that was known is there, all the same.
+  int write_cancelled(const FitResult& result, Session& session) const {
+    Context context;
+    write_model(result.model, output_, options_.form.write, context);
+    session.report["result"] = result_json(result);
+    session.say(fmt::format("cancelled: the best so far is written, {} triangles in {}",
+                            count_text(result.chosen.triangles), bytes_text(result.chosen.bytes)));
+    constexpr int kCancelled = 130;
+    return kCancelled;
+  }
+
+  FitCurve make_curve(BudgetFit& fit, const FitResult& result) const {
+    return {std::filesystem::path(input_).filename().string(), options_.view_size, result.chosen, fit.way(),
+            fit.all()};
+  }
+
+  void write_curve(const FitCurve& curve, const std::vector<CurvePicture>& pictures) const {
     if (curve_.empty()) return;
-    const std::string text = dump(result_json(result)) + "\n";
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
-    const OutputFile file{"", {bytes.begin(), bytes.end()}};
-    write_files(curve_, {&file, 1}, options_.write.force);
+    if (lower_extension(curve_) == ".html")
+      return write_text(curve_, curve_page(curve, pictures), options_.form.write.force);
+    Json json = to_json(curve.chosen);
+    json["view_size"] = curve.view_size;
+    for (const auto& [name, points] : {std::pair{"path", &curve.way}, {"all", &curve.all}}) {
+      if (points == &curve.all && points->empty()) continue;
+      json[name] = Json::array();
+      for (const FitPoint& point : *points) json[name].push_back(to_json(point));
+    }
+    write_text(curve_, dump(json) + "\n", options_.form.write.force);
   }
 
   void tell(Session& session, const Snapshot& before, const Snapshot& after, const FitResult& result) const {
@@ -213,11 +215,14 @@ class Fit : public Verb {
 
   static FitOptions first_options() {
     FitOptions options;
-    options.write.quantize = true;
+    options.form.write.quantize = true;
     return options;
   }
 
   std::string input_, output_, curve_, bytes_, match_;
+  std::optional<std::uint64_t> budget_;
+  FitMetric metric_ = FitMetric::psnr;  ///< Of `match_`.
+  double likeness_ = 0;
   bool allow_miss_ = false;
   FitOptions options_ = first_options();
   ReadOptions read_options_;

@@ -8,6 +8,7 @@
 
 #include "field_source.h"
 #include "fovea/base/text.h"
+#include "fovea/budget/fit.h"
 #include "fovea/io/extension.h"
 #include "fovea/io/read.h"
 #include "fovea/io/write.h"
@@ -61,6 +62,8 @@ class Lods : public Verb {
           "Each level as simple as one pixel of error allows where the chair takes a half, a quarter, a "
           "tenth of "
           "the screen's height."},
+         {"fovea lods helmet.glb -o lods --bytes 600KB,150KB,40KB --quantize",
+          "Three levels of so many bytes, triangles and texels as they look best."},
          {"fovea lods tree.glb -o lods --distances 20,50,200 --fov 70 --height 1440 --pixel-error 2",
           "The same by distances, on another screen."},
          {"fovea lods fox.glb -o lods --name 'LOD{i}_{name}' --textures keep",
@@ -103,6 +106,13 @@ class Lods : public Verb {
     if (has_all_levels()) return write_levels(session, input, importance);
     if (input.levels) options_.record = &input.levels->record;
     if (rebake_ == Rebake::on) options_.textures.rebake.original = &input.model;
+    if (!options_.bytes.empty()) {
+      const std::optional<std::uint64_t> smallest =
+          session.phase("split", input_, [&] { return split_bytes(input.model, session.context); });
+      if (smallest)
+        return too_many_bytes(session, options_.bytes.back(), *smallest,
+                              "--quantize and --compression meshopt take less");
+    }
     LodChain chain = session.phase(
         "levels", input_, [&] { return make_lod_chain(input.model, options_, importance, session.context); });
     std::vector<LodFile> files = session.phase("encode", [&] {
@@ -111,6 +121,11 @@ class Lods : public Verb {
     if (chain.levels.size() < 2) {
       throw Error(ErrorKind::unsupported, "no level is smaller than the original", input_,
                   "the notes say why; for a file that is compressed, --quantize --compression meshopt");
+    }
+    for (std::size_t i = 0; i < files.size() && !allow_miss_; ++i) {
+      const std::uint64_t most = chain.levels[i].most_bytes;
+      if (most > 0 && files[i].glb.size() > most)
+        return too_many_bytes(session, most, files[i].glb.size(), "--textures follow lets images give way");
     }
     const std::string sidecar = lod_sidecar(chain, files, fs::path(input_).filename().string());
     const std::vector<std::string> written =
@@ -132,6 +147,11 @@ class Lods : public Verb {
     list.push_back({"distances",
                     "The same as distances from the eye to the sphere's centre, rising, in scene units.",
                     &distances_, "lengths"});
+    list.push_back(
+        {"bytes",
+         "Bytes of the files of levels 1, 2, ..., falling: 500KB,120KB,30KB. Each has triangles and "
+         "texels so that pictures lose least.",
+         &bytes_, "sizes"});
     const OptionList screen = describe_screen();
     list.insert(list.end(), screen.begin(), screen.end());
     return list;
@@ -191,16 +211,17 @@ class Lods : public Verb {
 
   void declare_needs(Arguments& arguments) {
     need_format(arguments, write_options_);
-    arguments.need({{"levels", "ratio"}, "no --triangles, --coverage and --distances", [this] {
-                      return triangles_.empty() && coverages_.empty() && distances_.empty();
+    arguments.need({{"levels", "ratio"}, "no --triangles, --coverage, --distances and --bytes", [this] {
+                      return triangles_.empty() && coverages_.empty() && distances_.empty() && bytes_.empty();
                     }});
     arguments.need({{"rebake", "warp", "texture-format", "texture-psnr"}, "--textures follow", [this] {
                       return textures_ == LevelTextures::follow;
                     }});
-    arguments.need({{"name"}, "a folder as output", [this] { return !is_one_file(); }});
+    arguments.need({{"name", "bytes"}, "a folder as output", [this] { return !is_one_file(); }});
     arguments.need({{"vanish"}, "a .glb as output", [this] { return is_one_file(); }});
-    std::vector<std::string> of_chains{"levels", "ratio", "coverage", "distances",      "textures",
-                                       "rebake", "warp",  "vanish",   "texture-format", "texture-psnr"};
+    std::vector<std::string> of_chains{"levels",         "ratio",        "coverage", "distances",
+                                       "textures",       "rebake",       "warp",     "vanish",
+                                       "texture-format", "texture-psnr", "bytes"};
     for (const Option& option : describe_screen()) of_chains.push_back(option.name);
     for (const Option& option : error_options()) of_chains.push_back(option.name);
     arguments.need({of_chains, "a chain, not all levels", [this] { return !has_all_levels(); }});
@@ -249,10 +270,16 @@ class Lods : public Verb {
     options_.triangles = count_list(triangles_, "triangles");
     options_.coverages = number_list(coverages_, "coverage");
     options_.distances = number_list(distances_, "distances");
-    const int given = !triangles_.empty() + !coverages_.empty() + !distances_.empty();
+    if (!bytes_.empty()) options_.bytes = parse_byte_list("--bytes", bytes_);
+    const int given = !triangles_.empty() + !coverages_.empty() + !distances_.empty() + !bytes_.empty();
     if (given > 1)
       throw Error(ErrorKind::usage, "levels are asked for in several ways", {},
-                  "give one of --triangles, --coverage and --distances");
+                  "give one of --triangles, --coverage, --distances and --bytes");
+    for (std::size_t i = 1; i < options_.bytes.size(); ++i) {
+      if (options_.bytes[i] >= options_.bytes[i - 1])
+        throw Error(ErrorKind::usage, "numbers of bytes do not fall", "--bytes",
+                    "levels go from the finest to the coarsest");
+    }
   }
 
   /// Where levels are to go: a folder that is there or can be made, with nothing in the way.
@@ -279,8 +306,8 @@ class Lods : public Verb {
   }
 
   std::size_t planned_levels() const {
-    const std::size_t listed =
-        std::max({options_.triangles.size(), options_.coverages.size(), options_.distances.size()});
+    const std::size_t listed = std::max({options_.triangles.size(), options_.coverages.size(),
+                                         options_.distances.size(), options_.bytes.size()});
     return listed > 0 ? listed + 1 : static_cast<std::size_t>(options_.levels);
   }
 
@@ -342,6 +369,29 @@ class Lods : public Verb {
     return make_multi_tessellation(model, std::move(result.record), context);
   }
 
+  /// Finds the triangles of each level from its bytes; of the smallest file if there are too few for one.
+  std::optional<std::uint64_t> split_bytes(const Model& model, Context& context) {
+    options_.form = {write_options_, true, stem()};
+    FitOptions fit;
+    fit.form = options_.form;
+    fit.most_bytes = options_.bytes.front();
+    fit.format = options_.textures.output.format;
+    if (textures_ == LevelTextures::keep) fit.gives = FitGives::triangles;
+    BudgetFit splits(model, fit, context);
+    // Simplified for all levels alike they take a little more; and a level has fewer triangles than the one
+    // before.
+    constexpr double kMargin = 0.98, kFewer = 0.8;
+    auto most = static_cast<double>(counts(model).triangles);
+    for (const std::uint64_t bytes : options_.bytes) {
+      const FitResult split = splits.within(bytes);
+      if (split.cancelled) throw Error(ErrorKind::cancelled, "cancelled");
+      if (!split.reached && !allow_miss_) return split.chosen.bytes;
+      most = std::min(kMargin * static_cast<double>(split.chosen.triangles), kFewer * most);
+      options_.triangles.push_back(std::max<std::int64_t>(1, static_cast<std::int64_t>(most)));
+    }
+    return std::nullopt;
+  }
+
   Importance load_importance(const Input& input) const {
     NamedFields found = load_fields(importance_, input, read_options_);
     about(found.path, [&] { check(found.fields); });
@@ -396,7 +446,7 @@ class Lods : public Verb {
   }
 
   std::string input_, output_, importance_;
-  std::string triangles_, coverages_, distances_;
+  std::string triangles_, coverages_, distances_, bytes_;
   std::string name_ = "{name}_LOD{i}";
   double vanish_ = 0;
   bool allow_miss_ = false;

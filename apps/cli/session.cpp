@@ -142,10 +142,20 @@ void check_input(const std::string& input) {
   if (!fs::exists(input, ignored)) throw Error(ErrorKind::input, "no such file", input);
 }
 
+namespace {
+constexpr int kTargetMissed = 8;
+}
+
 int target_code(Session& session, bool reached, bool allow_miss) {
-  constexpr int kTargetMissed = 8;
   if (reached || allow_miss) return 0;
   session.say("target not reached (exit code 8; --allow-miss accepts it)");
+  return kTargetMissed;
+}
+
+int too_many_bytes(Session& session, std::uint64_t wanted, std::uint64_t smallest, const std::string& hint) {
+  session.say(fmt::format("error: no file takes {} or less: the smallest takes {}; nothing is written",
+                          bytes_text(wanted), bytes_text(smallest)));
+  session.say("hint: --allow-miss writes it all the same; " + hint);
   return kTargetMissed;
 }
 

@@ -124,4 +124,8 @@ void check_input(const std::string& input);
 /// The exit code of a run with a target: 8, with a word, if it was missed and that is not allowed.
 int target_code(Session& session, bool reached, bool allow_miss);
 
+/// Says that nothing is written, as no file takes so few bytes; `smallest` is what the smallest takes, `hint`
+/// what would help besides --allow-miss. Returns the exit code.
+int too_many_bytes(Session& session, std::uint64_t wanted, std::uint64_t smallest, const std::string& hint);
+
 }  // namespace fovea::cli

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "fovea/base/error.h"
+#include "fovea/base/text.h"
 #include "fovea/judge/compare.h"
 #include "text.h"
 
@@ -62,6 +64,41 @@ void need_views(Arguments& arguments, const ViewOptions& views) {
                     return views.set == ViewSet::fibonacci || views.set == ViewSet::orbit;
                   }});
   arguments.need({{"elevation"}, "--views orbit", [&views] { return views.set == ViewSet::orbit; }});
+}
+
+std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
+  constexpr std::array<std::pair<const char*, double>, 8> kUnits{{{"", 1},
+                                                                  {"b", 1},
+                                                                  {"kb", 1e3},
+                                                                  {"mb", 1e6},
+                                                                  {"gb", 1e9},
+                                                                  {"kib", 1024.0},
+                                                                  {"mib", 1024.0 * 1024},
+                                                                  {"gib", 1024.0 * 1024 * 1024}}};
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  std::string unit(static_cast<const char*>(end), text.data() + text.size());
+  std::erase(unit, ' ');
+  const auto at =
+      std::ranges::find(kUnits, lower_case(unit), [](const auto& u) { return std::string(u.first); });
+  const double bytes = at == kUnits.end() ? 0 : number * at->second;
+  if (error != std::errc() || !(bytes >= 1 && bytes < 1e15)) {
+    throw Error(ErrorKind::usage, fmt::format("'{}' is no number of bytes", printable(text)), option,
+                "write for example 500KB, 1.5MB or 300000");
+  }
+  return static_cast<std::uint64_t>(bytes);
+}
+
+Option describe_bytes(const std::string& help, std::string& text) { return {"bytes", help, &text, "size"}; }
+
+std::vector<std::uint64_t> parse_byte_list(const std::string& option, const std::string& text) {
+  std::vector<std::uint64_t> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    numbers.push_back(parse_bytes(option, text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return numbers;
 }
 
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t least,

@@ -23,6 +23,13 @@ Option describe_columns(std::int64_t& columns);
 /// An option that names numbers per vertex (field_source.h); `help` says what for.
 Option describe_field(const std::string& name, const std::string& help, std::string& source);
 
+/// An option for a number of bytes; `help` says of what.
+Option describe_bytes(const std::string& help, std::string& text);
+/// "500KB", "1.5 MB", "2MiB", "300000": 1 or more. Throws Error(usage) with the option.
+std::uint64_t parse_bytes(const std::string& option, const std::string& text);
+/// Several with commas between them.
+std::vector<std::uint64_t> parse_byte_list(const std::string& option, const std::string& text);
+
 /// "34,89": the numbers of an option's text, `least` to `most` of them. Throws Error(usage) with the option.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t least,
                                   std::size_t most);

@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "field_source.h"
+#include "fovea/budget/fit.h"
+#include "fovea/budget/triangle_search.h"
+#include "fovea/io/extension.h"
 #include "fovea/io/write.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/simplify/auto_saliency.h"
@@ -48,6 +54,8 @@ class Simplify : public Verb {
          {"fovea simplify helmet.glb -o tiny.glb --ratio 0.05 --textures --max-texture 512 --bake-normals",
           "Bake the textures for the result, at most 512 texels along a side, and the shape that went "
           "into normal maps."},
+         {"fovea simplify helmet.glb -o web.glb --bytes 500KB --textures --quantize",
+          "Triangles and texels as 500,000 bytes allow."},
          {"fovea simplify room.glb -o room-web.glb --ratio 0.2 --quantize --compression meshopt",
           "Simplify and store compactly."}}};
   }
@@ -60,6 +68,11 @@ class Simplify : public Verb {
     OptionList views(metric, options.end());
     options.erase(metric, options.end());
     arguments.add("Simplification", options);
+    arguments.add(
+        "Simplification",
+        {describe_bytes("Bytes of the whole .glb or .gltf at most, such as 500KB: as many triangles as "
+                        "that allows. With --textures images give way too, so that pictures lose least.",
+                        bytes_)});
     arguments.add(
         "Simplification",
         {describe_field("importance", "How much each vertex matters (1 is neutral, more keeps)", importance_),
@@ -108,13 +121,14 @@ class Simplify : public Verb {
       importance =
           session.phase("saliency", input_, [&] { return with_saliency(model, importance, session); });
     }
-    SimplifyResult result = session.phase(
-        "simplify", input_, [&] { return simplify(model, options_, importance, session.context); });
-    if (textures_) shrink_textures(model, result.model, session);
+    if (textures_ && rebake_ == Rebake::on) shrink_options_.rebake.original = &model;
+    const Made made =
+        budget_ ? make_within(*budget_, model, importance, session) : make(model, importance, session);
+    if (!bytes_reached_ && !allow_miss_) return miss(made, session);
     const auto files = session.phase(
-        "write", [&] { return write_model(result.model, output_, write_options_, session.context); });
-    const Snapshot after = snapshot(result.model, measure_output(files, result.model));
-    return tell(session, before, after, result);
+        "write", [&] { return write_model(made.model(), output_, write_options_, session.context); });
+    const Snapshot after = snapshot(made.model(), measure_output(files, made.model()));
+    return tell(session, before, after, made);
   }
 
  private:
@@ -165,14 +179,22 @@ class Simplify : public Verb {
     arguments.need({{"bake-normals"}, "--rebake on", [this] { return rebake_ == Rebake::on; }});
   }
 
-  void check_request() const {
-    if (!options_.triangles && !options_.ratio && !options_.error && !options_.error_abs) {
-      throw Error(ErrorKind::usage, "no target is given", {},
-                  "give --ratio, --triangles, --error or --error-abs, for example --ratio 0.1 to keep 10 %");
+  void check_request() {
+    if (!options_.triangles && !options_.ratio && !options_.error && !options_.error_abs && bytes_.empty()) {
+      throw Error(
+          ErrorKind::usage, "no target is given", {},
+          "give --ratio, --triangles, --error, --error-abs or --bytes, for example --ratio 0.1 to keep "
+          "10 %");
     }
     check_input(input_);
-    check_output(output_, "small.glb", {input_}, write_options_.force,
-                 [&](const auto& path) { fovea::check_output(path, write_options_); });
+    check_output(output_, "small.glb", {input_}, write_options_.force, [&](const auto& path) {
+      if (!bytes_.empty()) check_extension(path, "models of so many bytes", {".glb", ".gltf"});
+      fovea::check_output(path, write_options_);
+    });
+    if (!bytes_.empty()) budget_ = parse_bytes("--bytes", bytes_);
+    if (budget_ && shrink_options_.max_bytes)
+      throw Error(ErrorKind::usage, "--texture-bytes and --bytes are both given", {},
+                  "--bytes finds how many of its bytes textures get");
   }
 
   Importance load_importance(const Input& input) const {
@@ -203,27 +225,93 @@ class Simplify : public Verb {
     return std::move(found.importance);
   }
 
-  void shrink_textures(const Model& original, Model& simplified, Session& session) {
-    if (rebake_ == Rebake::on) shrink_options_.rebake.original = &original;
-    Shrunk result = session.phase("textures", input_, [&] {
-      return fovea::shrink_textures(simplified, shrink_options_, {}, session.context);
-    });
-    const std::optional<std::int64_t>& most = shrink_options_.max_bytes;
-    texture_bytes_reached_ = !most || result.bytes <= static_cast<std::uint64_t>(*most);
-    simplified = result.model;
-    texture_text_ = tell_shrunk(session, result, rebake_ == Rebake::on);
-    if (simplified.images.empty()) texture_text_ = "textures none\n";
+  /// A model simplified, and its textures made smaller if that is asked for.
+  struct Made {
+    SimplifyResult simplified;
+    std::optional<Shrunk> shrunk;
+    const Model& model() const { return shrunk ? shrunk->model : simplified.model; }
+  };
+
+  Made make(const Model& model, const Importance& importance, Session& session) {
+    Made made;
+    made.simplified = session.phase("simplify", input_,
+                                    [&] { return simplify(model, options_, importance, session.context); });
+    if (textures_) {
+      made.shrunk = session.phase("textures", input_, [&] {
+        return shrink_textures(made.simplified.model, shrink_options_, {}, session.context);
+      });
+    }
+    return made;
   }
 
-  int tell(Session& session, const Snapshot& before, const Snapshot& after,
-           const SimplifyResult& result) const {
-    const bool reached = reached_target(result, options_) && texture_bytes_reached_;
+  /// As many triangles as the bytes of the file allow; with textures as many as pictures want of both.
+  Made make_within(std::uint64_t bytes, const Model& model, const Importance& importance, Session& session) {
+    const FileForm form = file_form(output_, write_options_);
+    std::uint64_t most = counts(model).triangles;
+    if (options_.triangles) most = std::min(most, static_cast<std::uint64_t>(*options_.triangles));
+    if (textures_ && !model.images.empty() && most > 0) {
+      const FitPoint split =
+          session.phase("split", input_, [&] { return best_split(bytes, model, form, session); });
+      shrink_options_.max_bytes = std::max<std::int64_t>(1, static_cast<std::int64_t>(split.image_bytes));
+      most = split.triangles;
+    }
+    std::optional<Made> best, smallest;
+    std::uint64_t fewest = 0;
+    const auto bytes_at = [&](std::uint64_t triangles) {
+      options_.triangles = static_cast<std::int64_t>(triangles);
+      Made made = make(model, importance, session);
+      Context quiet;
+      const std::uint64_t taken = written_bytes(made.model(), form, quiet).total();
+      const std::uint64_t left = made.simplified.triangles_after;
+      if (taken <= bytes && (!best || left > best->simplified.triangles_after)) {
+        best = std::move(made);
+      } else if (taken > bytes && (!smallest || taken < fewest)) {
+        fewest = taken;
+        smallest = std::move(made);
+      }
+      return taken;
+    };
+    most_triangles(bytes, most, bytes_at);
+    bytes_reached_ = best.has_value();
+    return std::move(best ? *best : *smallest);
+  }
+
+  /// Nothing is written: what there is is another model.
+  int miss(const Made& made, Session& session) const {
+    Context quiet;
+    const WrittenBytes taken = written_bytes(made.model(), file_form(output_, write_options_), quiet);
+    return too_many_bytes(
+        session, *budget_, taken.total(),
+        textures_ ? "--compression meshopt and --texture-format webp take less"
+                  : fmt::format("with --textures images give way too, {} of it", bytes_text(taken.images)));
+  }
+
+  FitPoint best_split(std::uint64_t bytes, const Model& model, const FileForm& form, Session& session) const {
+    FitOptions fit;
+    fit.form = form;
+    fit.most_bytes = bytes;
+    fit.triangles = options_.triangles;
+    fit.format = shrink_options_.output.format;
+    return BudgetFit(model, fit, session.context).within(bytes).chosen;
+  }
+
+  int tell(Session& session, const Snapshot& before, const Snapshot& after, const Made& made) const {
+    const SimplifyResult& result = made.simplified;
+    const std::optional<std::int64_t>& most = shrink_options_.max_bytes;
+    const bool are_images_small =
+        !made.shrunk || budget_ || !most || made.shrunk->bytes <= static_cast<std::uint64_t>(*most);
+    const bool reached = reached_target(result, options_) && are_images_small && bytes_reached_;
+    std::string texture_text;
+    if (made.shrunk) {
+      texture_text = tell_shrunk(session, *made.shrunk, rebake_ == Rebake::on);
+      if (made.model().images.empty()) texture_text = "textures none\n";
+    }
     session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
     session.report["after"] = to_json(after);
     session.report["result"] = result_json(result, options_, reached);
     session.print_summary(fmt::format("{} -> {}\n{}{}{}{}time     {}\n", printable(input_),
                                       printable(output_), comparison_text(before, after),
-                                      result_text(result, options_), chosen_, texture_text_,
+                                      result_text(result, options_), chosen_, texture_text,
                                       session.spent_text()));
     return target_code(session, reached, allow_miss_);
   }
@@ -231,11 +319,12 @@ class Simplify : public Verb {
   std::string input_;
   std::string output_;
   std::string importance_;
-  std::string chosen_;        ///< A line about what `auto` chose.
-  std::string texture_text_;  ///< Lines about what became of textures.
+  std::string chosen_;  ///< A line about what `auto` chose.
   bool allow_miss_ = false;
   bool textures_ = false;
-  bool texture_bytes_reached_ = true;
+  std::string bytes_;
+  std::optional<std::uint64_t> budget_;
+  bool bytes_reached_ = true;
   Rebake rebake_ = Rebake::on;
   ShrinkOptions shrink_options_;
   SaliencySource saliency_ = SaliencySource::none;

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "field_source.h"
+#include "fovea/io/extension.h"
+#include "fovea/io/file_form.h"
 #include "fovea/io/image_file.h"
 #include "fovea/io/write.h"
 #include "fovea/render/scene.h"
@@ -65,7 +67,12 @@ class TextureVerb : public Verb {
           "The height in pixels at which the model will be shown: each image is halved while it has a texel "
           "for each pixel that shows it, as seen from the views; --texture-bytes looks at such pictures.",
           &shown_height_, "pixels", 1, 1 << 16},
-         {"allow-miss", "Exit with 0 even if images take more than --texture-bytes.", &allow_miss_, ""}});
+         describe_bytes(
+             "Bytes of the whole .glb or .gltf at most, such as 500KB: --texture-bytes of what is left "
+             "beside the geometry.",
+             bytes_),
+         {"allow-miss", "Exit with 0 even if --texture-bytes or --bytes are not kept to.", &allow_miss_,
+          ""}});
     arguments.add("Views", describe(views_));
     arguments.add("Warp", describe(options_.warp));
     arguments.add(
@@ -83,7 +90,9 @@ class TextureVerb : public Verb {
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
     need_format(arguments, write_options_);
-    arguments.need({{"allow-miss"}, "--texture-bytes", [&] { return options_.max_bytes.has_value(); }});
+    arguments.need({{"allow-miss"}, "--texture-bytes or --bytes", [&] {
+                      return options_.max_bytes.has_value() || !bytes_.empty();
+                    }});
     arguments.need({{"views", "view-count", "elevation", "fov", "margin"}, "--texture-size", [&] {
                       return shown_height_.has_value();
                     }});
@@ -106,8 +115,16 @@ class TextureVerb : public Verb {
         session.phase("views", input_, [&] { return texels_seen(input.model, session.context); });
     if (shown_height_) options_.shown_pixels = static_cast<double>(*shown_height_);
     if (!densities.empty()) options_.scales = needed_scales(densities, static_cast<double>(*shown_height_));
-    const Shrunk result = session.phase(
-        "textures", input_, [&] { return shrink_textures(input.model, options_, field, session.context); });
+    const Shrunk result = session.phase("textures", input_, [&] {
+      return budget_ ? shrink_textures_within(input.model, *budget_, file_form(output_, write_options_),
+                                              options_, field, session.context)
+                     : shrink_textures(input.model, options_, field, session.context);
+    });
+    if (budget_ && !allow_miss_) {
+      const std::uint64_t taken = bytes_of(result.model);
+      if (taken > *budget_)
+        return too_many_bytes(session, *budget_, taken, "\"fovea fit\" takes triangles off, too");
+    }
     const std::vector<MapFile> maps = maps_.empty() ? std::vector<MapFile>{} : map_files(result.atlases);
     for (const MapFile& map : maps) check_image_output(map.path, write_options_.force);
     const auto files = session.phase(
@@ -118,6 +135,11 @@ class TextureVerb : public Verb {
   }
 
  private:
+  std::uint64_t bytes_of(const Model& model) const {
+    Context quiet;
+    return written_bytes(model, file_form(output_, write_options_), quiet).total();
+  }
+
   /// None if nobody asks.
   std::vector<TexelDensity> texels_seen(const Model& model, Context& context) const {
     if (!shown_height_) return {};
@@ -188,20 +210,27 @@ class TextureVerb : public Verb {
     return field;
   }
 
-  void check_request() const {
+  void check_request() {
     if (options_.scale == 1 && options_.max_side == 0 && !options_.max_bytes && !shown_height_ &&
-        options_.output.format == TextureOutput::keep) {
+        bytes_.empty() && options_.output.format == TextureOutput::keep) {
       throw Error(ErrorKind::usage, "nothing is asked for", {},
-                  "give --texture-size, --texture-bytes, --texture-scale, --max-texture or --texture-format, "
+                  "give --texture-size, --texture-bytes, --bytes, --texture-scale, --max-texture or "
+                  "--texture-format, "
                   "for example --max-texture 1024");
     }
     check_input(input_);
-    check_output(output_, "small.glb", {input_}, write_options_.force,
-                 [&](const auto& path) { fovea::check_output(path, write_options_); });
+    check_output(output_, "small.glb", {input_}, write_options_.force, [&](const auto& path) {
+      if (!bytes_.empty()) check_extension(path, "models of so many bytes", {".glb", ".gltf"});
+      fovea::check_output(path, write_options_);
+    });
+    if (!bytes_.empty()) budget_ = parse_bytes("--bytes", bytes_);
+    if (budget_ && options_.max_bytes)
+      throw Error(ErrorKind::usage, "--texture-bytes and --bytes are both given", {}, "give one of them");
     if (!maps_.empty()) check_image_output(maps_, true);
   }
 
   bool reached(const Shrunk& result) const {
+    if (budget_) return bytes_of(result.model) <= *budget_;
     return !options_.max_bytes || result.bytes <= static_cast<std::uint64_t>(*options_.max_bytes);
   }
 
@@ -232,6 +261,8 @@ class TextureVerb : public Verb {
   SaliencySource saliency_ = SaliencySource::none;
   std::optional<std::int64_t> shown_height_;
   bool allow_miss_ = false;
+  std::string bytes_;
+  std::optional<std::uint64_t> budget_;
   ViewOptions views_;
   ShrinkOptions options_;
   ReadOptions read_options_;

@@ -1,327 +1,407 @@
 #include "fovea/budget/fit.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <memory>
+#include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "fovea/base/error.h"
+#include "fovea/budget/fit_ladders.h"
 #include "fovea/budget/marginal.h"
-#include "fovea/budget/picture_loss.h"
-#include "fovea/io/gltf_write.h"
 #include "fovea/model/image_error.h"
 #include "fovea/simplify/simplify.h"
-#include "fovea/texture/shrink.h"
 
 namespace fovea {
 
 namespace {
 
-constexpr double kFewerTriangles = 0.7;  // from rung to rung
-constexpr double kFewestTriangles = 0.005;
-/// From so many triangles on pictures decide which go (simplify.h); up to there quadrics do as well.
-constexpr double kMostByPictures = 12000;
-constexpr double kFewerImageBytes = 0.6;
-constexpr double kFewestImageBytes = 0.008;
-/// Bytes of JSON that come at most when images get other sizes and formats (EXT_texture_webp).
-std::uint64_t json_slack(const Model& model) {
-  constexpr std::uint64_t kOnce = 128, kForEach = 96;
-  return kOnce + kForEach * (model.images.size() + model.textures.size());
+void check_options(const Model& model, const FitOptions& options) {
+  if (counts(model).triangles == 0) throw Error(ErrorKind::unsupported, "the model has no triangles");
+  if (options.triangles && *options.triangles < 1)
+    throw Error(ErrorKind::usage, "there are fewer than one triangle to keep", "triangles");
 }
 
-std::uint64_t image_bytes(const Model& model) {
-  std::uint64_t sum = 0;
-  for (const EncodedImage& image : model.images) sum += image.bytes.size();
-  return sum;
+FitOptions prepared(FitOptions options) {
+  // All pairs are few only of two ladders.
+  if (options.search == FitSearch::exhaustive) options.ladders = FitLadderSet::joint;
+  return options;
 }
 
-/// Ladders of one model, and what their rungs take and lose together.
-class Fitter {
+void check_likeness(FitMetric metric, double value) {
+  const double most = metric == FitMetric::psnr ? std::numeric_limits<double>::max() : 1;
+  if (!(value >= 0 && value <= most))
+    throw Error(ErrorKind::usage, "no likeness has this value", "match", "MS-SSIM and FLIP are from 0 to 1");
+}
+
+}  // namespace
+
+class BudgetFit::Finder {
  public:
-  Fitter(const Model& model, const FitOptions& options, Context& context)
-      : model_(model),
-        options_(options),
-        context_(context),
-        pictures_(model, options.views, static_cast<int>(options.view_size), context) {
-    scratch_.threads = context.threads;
-    scratch_.seed = context.seed;
-    scratch_.progress = [this](std::string_view, double) { return !context_.cancelled(); };
-    make_mesh_ladder();
-    make_texture_ladder();
-  }
+  Finder(const Model& model, const FitOptions& options, Context& context)
+      : options_(prepared(options)), context_(context), ladders_(model, options_, context) {}
 
-  FitResult run() {
-    const std::uint64_t most = options_.match == FitMetric::none ? *options_.bytes : 0;
-    std::vector<JointPoint> path = prune(ladders(), most);
+  FitResult within(std::uint64_t bytes) {
     FitResult result;
-    for (const JointPoint& point : path) result.path.push_back(fit_point(point));
-    if (options_.match != FitMetric::none) {
-      match(path, result);
-    } else {
-      result.reached = path.back().bytes <= most;
-      const bool is_whole = path.size() == 1;
-      const JointPoint end = result.reached && !is_whole ? best_within(path.back()) : path.back();
-      result.model = combined(end.rungs);
-      result.chosen = fit_point(end);
-      if (result.reached && !is_whole) spend(end, result);
+    bytes_ = bytes;
+    best_.reset();
+    try {
+      find(result);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::cancelled) throw;
+      ladders_.finish_up();
+      if (!best_ && !guess()) throw;
+      result.cancelled = true;
+      result.reached = true;
     }
-    result.pictures = drawn_;
+    result.chosen = point(*best_);
+    result.model = std::move(best_->model);
+    result.pictures = ladders_.pictures_drawn();
     return result;
   }
+
+  FitResult like(FitMetric metric, double value) {
+    check_likeness(metric, value);
+    const auto is_like = [&](const Model& model) { return this->is_like(model, metric, value); };
+    const std::vector<JointPoint> path = walk(0);
+    FitResult result;
+    // Likeness falls along the path, all but everywhere.
+    std::size_t good = 0, bad = path.size();
+    const auto at = [&](std::size_t i) { return ladders_.model(ladders_.choice(path[i].rungs)); };
+    const bool reached = is_like(at(0));
+    while (reached && bad - good > 1) {
+      const std::size_t middle = good + (bad - good) / 2;
+      (is_like(at(middle)) ? good : bad) = middle;
+    }
+    const FitChoice choice = ladders_.choice(path[good].rungs);
+    Best best{choice, at(good), ladders_.loss(choice)};
+    if (reached && bad < path.size()) {
+      // Between the two points fewer bytes may do.
+      constexpr std::uint64_t kNear = 32;  // parts of the bytes
+      std::uint64_t least = path[bad].bytes / 2, most = ladders_.file_bytes(best.model);
+      while (most - std::min(most, least) > most / kNear) {
+        FitResult tried = within(least + (most - least) / 2);
+        if (tried.cancelled) throw Error(ErrorKind::cancelled, "cancelled");
+        if (tried.reached && is_like(tried.model)) {
+          best = {best_->choice, std::move(tried.model), best_->loss};
+          most = ladders_.file_bytes(best.model);
+        } else {
+          least += (most - least) / 2;
+        }
+      }
+    }
+    for (const JointPoint& point : path) result.path.push_back(this->point(point));
+    result.reached = reached;
+    result.chosen = point(best);
+    result.model = std::move(best.model);
+    result.pictures = ladders_.pictures_drawn();
+    return result;
+  }
+
+  std::vector<FitPoint> way() {
+    way_ = walk(0);
+    std::vector<FitPoint> points;
+    for (const JointPoint& point : way_) points.push_back(this->point(point));
+    return points;
+  }
+
+  std::vector<FitPoint> all() {
+    std::vector<FitPoint> points;
+    for (const JointPoint& point : all_) points.push_back(this->point(point));
+    return points;
+  }
+
+  Model at(std::size_t point) { return ladders_.model(ladders_.choice(way_.at(point).rungs)); }
 
  private:
-  struct MeshRung {
-    std::size_t steps = 0;
-    std::uint64_t triangles = 0;
-    std::uint64_t bytes = 0;  ///< Of the file without images.
+  struct Best {
+    FitChoice choice;
+    Model model;
+    PictureLoss::Loss loss;
   };
 
-  void make_mesh_ladder() {
-    const std::uint64_t total = counts(model_).triangles;
-    SimplifyOptions simplify_options;
-    simplify_options.ratio = kFewestTriangles;
-    const double fewest = std::max(1.0, kFewestTriangles * static_cast<double>(total));
-    if (fewest < kMostByPictures) {
-      simplify_options.metric = Metric::image;
-      simplify_options.metric_from = kMostByPictures / fewest;
+  FitPoint point(const JointPoint& point) {
+    const FitChoice choice = ladders_.choice(point.rungs);
+    const PictureLoss::Loss loss = ladders_.loss(choice);
+    return {ladders_.meshes().triangles(choice.steps), ladders_.image_bytes(choice), point.bytes, loss.value,
+            psnr(loss.squared)};
+  }
+
+  FitPoint point(const Best& best) {
+    std::uint64_t images = 0;
+    for (const EncodedImage& image : best.model.images) images += image.bytes.size();
+    return {counts(best.model).triangles, images, ladders_.file_bytes(best.model), best.loss.value,
+            psnr(best.loss.squared)};
+  }
+
+  /// Points from the largest down, the last within the bytes if there is one.
+  std::vector<JointPoint> walk(std::uint64_t bytes) {
+    const JointLadders joint = ladders_.joint();
+    if (options_.search == FitSearch::exhaustive) {
+      if (all_.empty()) all_ = exhaust(joint);
+      return lower_hull(all_);
     }
-    record_ = simplify(model_, simplify_options, {}, context_).record;
-    const double most =
-        options_.triangles ? static_cast<double>(*options_.triangles) : static_cast<double>(total);
-    for (double triangles = std::min(most, static_cast<double>(total));;
-         triangles = std::min(triangles * kFewerTriangles, triangles - 1)) {
-      const std::size_t steps = record_.steps_to(static_cast<std::uint64_t>(std::max(triangles, 0.0)));
-      if (!meshes_.empty() && steps == meshes_.back().steps) break;
-      const MeshRung rung = measured(steps);
-      if (meshes_.empty() || rung.bytes < meshes_.back().bytes) meshes_.push_back(rung);
-      if (triangles < kFewestTriangles * static_cast<double>(total) || triangles < 2) break;
-    }
+    if (options_.search == FitSearch::prune) return prune(joint, bytes);
+    std::vector<JointPoint> path = grow(joint, bytes > 0 ? bytes : std::numeric_limits<std::uint64_t>::max());
+    std::ranges::reverse(path);
+    return path;
   }
 
-  MeshRung measured(std::size_t steps) {
-    const Model level = replay(model_, record_, steps);
-    const GltfOutput output = write_gltf(level, options_.binary, options_.stem, options_.write, scratch_);
-    std::uint64_t bytes = 0;
-    for (const OutputFile& file : output.files) bytes += file.bytes.size();
-    return {steps, record_.triangles_after(steps), bytes - output.bytes.images};
-  }
-
-  void make_texture_ladder() {
-    textures_.push_back(model_);
-    const std::uint64_t whole = image_bytes(model_);
-    if (whole == 0) return;
-    ShrinkOptions shrink;
-    shrink.output.format = options_.format;
-    // Larger files than the budget cost most to look at, and none of them can be chosen.
-    const std::uint64_t most =
-        options_.bytes && !options_.whole_path ? std::min(whole, *options_.bytes) : whole;
-    shrink.max_bytes = static_cast<std::int64_t>(most);
-    shrink.shown_pixels = static_cast<double>(options_.view_size);
-    shrinker_ = std::make_unique<TextureLadder>(model_, shrink, scratch_);
-    for (double bytes = std::min(static_cast<double>(whole) * kFewerImageBytes, static_cast<double>(most));
-         bytes > kFewestImageBytes * static_cast<double>(whole); bytes *= kFewerImageBytes) {
-      context_.advance_or_throw("textures", 1 - bytes / static_cast<double>(whole));
-      Shrunk shrunk = shrinker_->within(static_cast<std::uint64_t>(bytes), false);
-      if (shrunk.bytes >= image_bytes(textures_.back())) continue;
-      textures_.push_back(std::move(shrunk.model));
-    }
-  }
-
-  JointLadders ladders() {
-    JointLadders ladders;
-    ladders.rungs = {meshes_.size(), textures_.size()};
-    ladders.bytes = [this](const Rungs& rungs) { return file_bytes(rungs); };
-    ladders.loss = [this](const Rungs& rungs) { return loss(combined(rungs)); };
-    return ladders;
-  }
-
-  double loss(const Model& model) {
-    const auto rungs = static_cast<double>(meshes_.size() + textures_.size());
-    context_.advance_or_throw("fit", std::min(1.0, static_cast<double>(++drawn_) / (1.5 * rungs)));
-    return pictures_.squared(model);
-  }
-
-  /// The triangles of a number of steps with the images of a model.
-  Model with_images(std::size_t steps, const Model& images) const {
-    Model level = replay(model_, record_, steps);
-    Model result = images;
-    result.meshes = std::move(level.meshes);
-    return result;
-  }
-  Model combined(const Rungs& rungs) const {
-    return with_images(meshes_[rungs[0]].steps, textures_[rungs[1]]);
-  }
-
-  FitPoint fit_point(const JointPoint& point) const {
-    return {meshes_[point.rungs[0]].triangles, image_bytes(textures_[point.rungs[1]]), point.bytes,
-            psnr(point.loss)};
-  }
-
-  /// Of rungs, at most.
-  std::uint64_t file_bytes(const Rungs& rungs) const {
-    const std::uint64_t more = rungs[1] > 0 ? json_slack(model_) : 0;
-    return meshes_[rungs[0]].bytes + image_bytes(textures_[rungs[1]]) + more;
-  }
-  std::uint64_t file_bytes(const Model& model) {
-    std::uint64_t bytes = 0;
-    for (const OutputFile& file :
-         write_gltf(model, options_.binary, options_.stem, options_.write, scratch_).files)
-      bytes += file.bytes.size();
-    return bytes;
-  }
-
-  /// The best of a point and of all sizes of images with as many triangles as fit beside them: where images
-  /// come in few sizes (PNG), a single step down can be too large to be taken, and two of them worth it.
-  JointPoint best_within(JointPoint best) {
-    for (std::size_t t = 0; t < textures_.size(); ++t) {
-      Rungs rungs{0, t};
-      while (rungs[0] < meshes_.size() && file_bytes(rungs) > *options_.bytes) ++rungs[0];
-      if (rungs[0] == meshes_.size() || rungs == best.rungs) continue;
-      const double lost = loss(combined(rungs));
-      if (lost < best.loss) best = {rungs, file_bytes(rungs), lost};
+  /// Of `walk`, and of all points if all were measured, the best within the bytes.
+  std::optional<JointPoint> end_of(const std::vector<JointPoint>& path) const {
+    std::optional<JointPoint> best;
+    for (const std::vector<JointPoint>* points : {&path, &all_}) {
+      for (const JointPoint& point : *points)
+        if (point.bytes <= bytes_ && (!best || point.loss < best->loss)) best = point;
     }
     return best;
   }
 
-  /// Tries the numbers of triangles around a point with all other bytes spent on images.
-  void spend(const JointPoint& end, FitResult& result) {
-    const std::uint64_t most = *options_.bytes;
-    double least = end.loss;
-    std::size_t rung = end.rungs[0];
-    const std::size_t first = rung > 0 ? rung - 1 : 0, last = std::min(rung + 1, meshes_.size() - 1);
-    for (std::size_t m = first; shrinker_ && m <= last; ++m) {
-      if (meshes_[m].bytes + json_slack(model_) >= most) continue;
-      const std::uint64_t room = most - meshes_[m].bytes - json_slack(model_);
-      const Shrunk images = shrinker_->within(room, false);
-      if (images.bytes > room) continue;
-      Model tried = with_images(meshes_[m].steps, images.model);
-      const double lost = loss(tried);
-      if (lost >= least || file_bytes(tried) > most) continue;
-      least = lost;
-      rung = m;
-      result.model = std::move(tried);
-    }
-    add_triangles(rung, result.model);
-    choose_triangles(result.model);
-    refine_images(result.model);
-    result.chosen = {counts(result.model).triangles, image_bytes(result.model), file_bytes(result.model),
-                     psnr(loss(result.model))};
+  void find(FitResult& result) {
+    const std::vector<JointPoint> path = walk(bytes_);
+    for (const JointPoint& point : path) result.path.push_back(this->point(point));
+    const std::optional<JointPoint> end = end_of(path);
+    if (end) consider(ladders_.choice(end->rungs));
+    if (best_ && best_->choice == ladders_.whole()) return;
+    try_image_levels();
+    result.reached = best_.has_value();
+    if (!result.reached) return take_smallest();
+    try_shares();
+    add_triangles();
+    choose_triangles();
+    refine_images();
   }
 
-  /// As many triangles as there is room for, up to those of the rung above.
-  void add_triangles(std::size_t rung, Model& model) {
-    if (rung == 0) return;
-    std::size_t enough = meshes_[rung].steps,
-                few = meshes_[rung - 1].steps;  // steps that fit, and that do not
-    constexpr std::size_t kFine = 64;
-    while (enough > few + std::max<std::size_t>(1, enough / kFine)) {
-      const std::size_t middle = few + (enough - few) / 2;
-      Model tried = with_images(middle, model);
-      if (file_bytes(tried) > *options_.bytes) {
-        few = middle;
+  /// Takes a choice that loses less than the best so far, with fewer triangles if it must to keep to the
+  /// bytes.
+  void consider(FitChoice choice) {
+    if (!keeps_to_bytes(choice)) return;
+    if (best_ && ladders_.loss(choice).value >= best_->loss.value) return;
+    Model model = ladders_.model(choice);
+    constexpr int kTries = 4;
+    for (int i = 0; i < kTries; ++i) {
+      const std::uint64_t taken = ladders_.file_bytes(model);
+      if (taken <= bytes_) {
+        const PictureLoss::Loss loss = ladders_.loss(choice);
+        if (!best_ || loss.value < best_->loss.value) best_ = Best{choice, std::move(model), loss};
+        return;
+      }
+      const double excess = static_cast<double>(taken - bytes_) * (1 << i) + 64;
+      choice.steps = ladders_.steps_within(choice.steps, ladders_.mesh_bytes(choice) - excess);
+      model = ladders_.model(choice);
+    }
+  }
+
+  /// By estimate; takes triangles off if they are too many.
+  bool keeps_to_bytes(FitChoice& choice) {
+    const std::uint64_t taken = ladders_.bytes(choice);
+    if (taken <= bytes_) return true;
+    const double room = ladders_.mesh_bytes(choice) - static_cast<double>(taken - bytes_);
+    if (room < 0) return false;
+    choice.steps = ladders_.steps_within(choice.steps, room - 1);
+    return ladders_.bytes(choice) <= bytes_;
+  }
+
+  /// Without pictures: half of the bytes for images.
+  bool guess() {
+    for (const std::vector<std::size_t>& ways : ladders_.image_levels()) {
+      FitChoice choice = ladders_.whole();
+      choice.ways = ways;
+      if (2 * ladders_.image_bytes(choice) > bytes_ && &ways != &ladders_.image_levels().back()) continue;
+      if (!keeps_to_bytes(choice)) continue;
+      Model model = ladders_.model(choice);
+      if (ladders_.file_bytes(model) > bytes_) continue;
+      constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+      best_ = Best{choice, std::move(model), {kUnknown, kUnknown}};
+      return true;
+    }
+    return false;
+  }
+
+  void take_smallest() {
+    const JointLadders joint = ladders_.joint();
+    Rungs last;
+    for (const std::size_t rungs : joint.rungs) last.push_back(rungs - 1);
+    const FitChoice choice = ladders_.choice(last);
+    best_ = Best{choice, ladders_.model(choice), ladders_.loss(choice)};
+  }
+
+  /// All sizes of all images together with as many triangles as fit beside them: where images come in few
+  /// sizes (PNG), a single step down can be too large to be taken, and two of them worth it.
+  void try_image_levels() {
+    // Not what is far from the best so far.
+    constexpr std::uint64_t kFar = 5;
+    const std::uint64_t now = best_ ? ladders_.image_bytes(best_->choice) : 0;
+    for (const std::vector<std::size_t>& ways : ladders_.image_levels()) {
+      FitChoice choice = ladders_.whole();
+      choice.ways = ways;
+      const std::uint64_t taken = ladders_.image_bytes(choice);
+      if (best_ && (taken > kFar * now || taken * kFar < now)) continue;
+      if (!fewest_steps(choice)) continue;
+      consider(std::move(choice));
+    }
+  }
+
+  /// Sets the first steps of the whole simplification, as few as the bytes allow. False if none are enough.
+  bool fewest_steps(FitChoice& choice) {
+    const MeshLadders& meshes = ladders_.meshes();
+    std::size_t least = 0, most = meshes.step_count();
+    const auto fits = [&](std::size_t count) {
+      choice.steps = meshes.first_steps(count);
+      return ladders_.bytes(choice) <= bytes_;
+    };
+    if (!fits(most)) return false;
+    while (least < most) {
+      const std::size_t middle = least + (most - least) / 2;
+      if (fits(middle)) {
+        most = middle;
       } else {
-        enough = middle;
-        model = std::move(tried);
+        least = middle + 1;
       }
     }
+    return fits(most);
+  }
+
+  /// More and fewer triangles than the best has, with all other bytes spent on images.
+  void try_shares() {
+    TextureLadders* const textures = ladders_.textures();
+    if (textures == nullptr) return;
+    const FitChoice base = best_->choice;
+    const double taken = ladders_.mesh_bytes(base);
+    const double other = static_cast<double>(ladders_.bytes(base) - ladders_.image_bytes(base)) - taken;
+    for (const double share : {0.7, 0.85, 1.0, 1.2, 1.45}) {
+      FitChoice choice = base;
+      choice.steps = ladders_.steps_within(base.steps, share * taken);
+      const double room = static_cast<double>(bytes_) - other - ladders_.mesh_bytes(choice);
+      if (room <= 0) continue;
+      choice.ways = textures->within(static_cast<std::uint64_t>(room), false);
+      consider(choice);
+      if (static_cast<double>(ladders_.image_bytes(base)) > room) continue;
+      choice.ways = textures->filled(base.ways, static_cast<std::uint64_t>(room));
+      consider(choice);
+    }
+  }
+
+  /// As many triangles as there is room for.
+  void add_triangles() {
+    const std::uint64_t taken = ladders_.file_bytes(best_->model);
+    const double now = ladders_.mesh_bytes(best_->choice);
+    double enough = now, most = now + static_cast<double>(bytes_ - taken);
+    constexpr int kTries = 6;
+    FitChoice best = best_->choice;
+    for (int i = 0; i < kTries; ++i) {
+      // The estimate first: it is mostly right.
+      const double tried = i == 0 ? most : (enough + most) / 2;
+      FitChoice choice = best_->choice;
+      choice.steps = ladders_.steps_within(best_->choice.steps, tried);
+      if (choice.steps == best.steps) break;
+      if (ladders_.file_bytes(ladders_.model(choice)) <= bytes_) {
+        best = std::move(choice);
+        enough = tried;
+        if (i == 0) break;
+      } else {
+        most = tried;
+      }
+    }
+    if (best != best_->choice && ladders_.loss(best).value < best_->loss.value)
+      best_ = Best{best, ladders_.model(best), ladders_.loss(best)};
+  }
+
+  void take_if_better(Model model) {
+    if (ladders_.file_bytes(model) > bytes_) return;
+    const PictureLoss::Loss loss = ladders_.loss(model);
+    if (loss.value < best_->loss.value) best_ = Best{best_->choice, std::move(model), loss};
   }
 
   /// As many triangles, but for a few, simplified anew with pictures deciding about the last part of the way
-  /// (simplify.h), if that loses less.
-  void choose_triangles(Model& model) {
-    std::uint64_t triangles = counts(model).triangles;
-    if (triangles == record_.triangles_before) return;
+  /// (simplify.h).
+  void choose_triangles() {
+    if (options_.gives == FitGives::texels) return;
+    std::uint64_t triangles = counts(best_->model).triangles;
+    if (triangles == counts(ladders_.original()).triangles) return;
     constexpr int kTries = 3;
-    for (int i = 0; i < kTries; ++i) {
+    for (int i = 0; i < kTries && triangles > 0; ++i) {
       SimplifyOptions simplify_options;
       simplify_options.triangles = static_cast<std::int64_t>(triangles);
-      SimplifyResult simplified = simplify(model_, simplify_options, {}, scratch_);
+      SimplifyResult simplified = simplify(ladders_.original(), simplify_options, {}, ladders_.scratch());
+      if (simplified.stop == StopReason::cancelled) throw Error(ErrorKind::cancelled, "cancelled");
       if (simplified.metric == Metric::quadric) return;  // as the record has them
-      Model tried = model;
-      tried.meshes = std::move(simplified.model.meshes);
-      const std::uint64_t bytes = file_bytes(tried);
-      if (bytes <= *options_.bytes) {
-        if (loss(tried) < loss(model)) model = std::move(tried);
-        return;
-      }
+      Model model = best_->model;
+      model.meshes = std::move(simplified.model.meshes);
+      const std::uint64_t bytes = ladders_.file_bytes(model);
+      if (bytes <= bytes_) return take_if_better(std::move(model));
       // Their vertices take a little more.
       constexpr double kMargin = 0.995;
-      triangles =
-          static_cast<std::uint64_t>(kMargin * static_cast<double>(triangles) *
-                                     static_cast<double>(*options_.bytes) / static_cast<double>(bytes));
+      triangles = static_cast<std::uint64_t>(kMargin * static_cast<double>(triangles) *
+                                             static_cast<double>(bytes_) / static_cast<double>(bytes));
     }
   }
 
-  /// The same triangles with qualities of images tried more finely, if that loses less.
-  void refine_images(Model& model) {
-    if (!shrinker_) return;
-    const std::uint64_t images = image_bytes(model), rest = file_bytes(model) - images;
-    if (rest + json_slack(model_) >= *options_.bytes) return;
-    const std::uint64_t room = *options_.bytes - rest - json_slack(model_);
-    const Shrunk finer = shrinker_->within(room, true);
-    Model tried = finer.model;
-    tried.meshes = model.meshes;
-    if (finer.bytes <= room && file_bytes(tried) <= *options_.bytes && loss(tried) < loss(model))
-      model = std::move(tried);
-  }
-
-  /// The last point of the path that is as like the original as asked.
-  void match(const std::vector<JointPoint>& path, FitResult& result) {
-    // Likeness falls along the path, all but everywhere.
-    std::size_t good = 0, bad = path.size();
-    result.reached = is_like(combined(path[0].rungs));
-    while (result.reached && bad - good > 1) {
-      const std::size_t middle = good + (bad - good) / 2;
-      (is_like(combined(path[middle].rungs)) ? good : bad) = middle;
+  /// The same triangles with qualities of images tried more finely.
+  void refine_images() {
+    TextureLadders* const textures = ladders_.textures();
+    if (textures == nullptr) return;
+    std::uint64_t images = 0;
+    for (const EncodedImage& image : best_->model.images) images += image.bytes.size();
+    const std::uint64_t room = bytes_ - (ladders_.file_bytes(best_->model) - images);
+    const std::vector<std::size_t> before = best_->choice.ways;
+    const std::array<std::vector<std::size_t>, 2> tried{textures->within(room, true),
+                                                        textures->filled(before, room)};
+    for (const std::vector<std::size_t>& ways : tried) {
+      if (ways == best_->choice.ways) continue;
+      Model model = best_->model;
+      ladders_.set_images(model, ways);
+      take_if_better(std::move(model));
     }
-    result.model = combined(path[good].rungs);
-    result.chosen = result.path[good];
-    result.chosen.bytes = file_bytes(result.model);
   }
 
-  bool is_like(const Model& model) {
-    const Comparison scores = pictures_.scores(model);
-    ++drawn_;
+  bool is_like(const Model& model, FitMetric metric, double value) {
+    const Comparison scores = ladders_.scores(model);
     return std::ranges::all_of(scores.passes, [&](const ImageScores& s) {
-      switch (options_.match) {
-        case FitMetric::psnr: return s.psnr_foreground >= options_.match_value;
-        case FitMetric::ms_ssim: return s.ms_ssim_foreground >= options_.match_value;
-        case FitMetric::flip: return s.flip_foreground <= options_.match_value;
-        case FitMetric::none: break;
+      switch (metric) {
+        case FitMetric::psnr: return s.psnr_foreground >= value;
+        case FitMetric::ms_ssim: return s.ms_ssim_foreground >= value;
+        case FitMetric::flip: return s.flip_foreground <= value;
       }
       return true;
     });
   }
 
-  const Model& model_;
-  const FitOptions& options_;
+  const FitOptions options_;
   Context& context_;
-  Context scratch_;  // what is tried is not told
-  PictureLoss pictures_;
-  CollapseRecord record_;
-  std::vector<MeshRung> meshes_;  // from the most triangles down
-  std::vector<Model> textures_;   // from the original's images down
-  std::unique_ptr<TextureLadder> shrinker_;
-  std::size_t drawn_ = 0;
+  FitLadders ladders_;
+  std::uint64_t bytes_ = 0;
+  std::optional<Best> best_;
+  std::vector<JointPoint> all_;  // of an exhaustive search
+  std::vector<JointPoint> way_;
 };
 
-void check_options(const Model& model, const FitOptions& options) {
-  if (options.bytes.has_value() == (options.match != FitMetric::none))
-    throw Error(ErrorKind::usage, "a fit is to a number of bytes or to a likeness", "fit",
-                "give one of --bytes and --match");
-  if (counts(model).triangles == 0) throw Error(ErrorKind::unsupported, "the model has no triangles");
+BudgetFit::BudgetFit(const Model& model, const FitOptions& options, Context& context) {
+  check_options(model, options);
+  finder_ = std::make_unique<Finder>(model, options, context);
 }
 
-}  // namespace
+BudgetFit::~BudgetFit() = default;
+
+FitResult BudgetFit::within(std::uint64_t bytes) { return finder_->within(bytes); }
+FitResult BudgetFit::like(FitMetric metric, double value) { return finder_->like(metric, value); }
+std::vector<FitPoint> BudgetFit::way() { return finder_->way(); }
+std::vector<FitPoint> BudgetFit::all() { return finder_->all(); }
+Model BudgetFit::at(std::size_t point) { return finder_->at(point); }
 
 OptionList describe(FitOptions& o) {
   OptionList options{
       {"triangles", "Triangles to keep at most.", &o.triangles, "triangles", 1},
       {"view-size", "Pixels along each side of the pictures that decide: how large the model will be seen.",
-       &o.view_size, "pixels", 64, 4096}};
+       &o.view_size, "pixels", 64, 4096},
+      {"distortion", "What counts as lost in these pictures.",
+       choice(o.distortion, {"mse", "ms-ssim", "flip"}), ""},
+      {"search", "How choices are found: from all down, from little up, or by drawing all.",
+       choice(o.search, {"prune", "grow", "exhaustive"}), ""},
+      {"ladders", "Whether all meshes and all images go down together, or each for itself.",
+       choice(o.ladders, {"joint", "separate"}), ""}};
   ImageOutputOptions output;
   for (Option& option : describe(output)) {
     if (option.name != "texture-format") continue;
@@ -329,11 +409,6 @@ OptionList describe(FitOptions& o) {
     options.push_back(option);
   }
   return options;
-}
-
-FitResult fit(const Model& model, const FitOptions& options, Context& context) {
-  check_options(model, options);
-  return Fitter(model, options, context).run();
 }
 
 }  // namespace fovea

@@ -1,36 +1,48 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fovea/base/context.h"
 #include "fovea/base/options.h"
-#include "fovea/io/write.h"
+#include "fovea/budget/picture_loss.h"
+#include "fovea/io/file_form.h"
 #include "fovea/model/model.h"
 #include "fovea/render/view.h"
 #include "fovea/texture/image_output.h"
 
 namespace fovea {
 
-/// How like the original a result has to be.
-enum class FitMetric { none, psnr, ms_ssim, flip };
+/// How like the original a result has to be, over what either covers, base colour and lit alike.
+enum class FitMetric {
+  psnr,     ///< dB at least,
+  ms_ssim,  ///< 0 … 1 at least,
+  flip,     ///< 0 … 1 at most.
+};
+
+/// How the ladders are walked (marginal.h).
+enum class FitSearch { prune, grow, exhaustive };
+
+/// Whether all meshes are one ladder and all images another, or each is one of its own.
+enum class FitLadderSet { joint, separate };
+
+/// What may be given away.
+enum class FitGives { both, triangles, texels };
 
 struct FitOptions {
-  std::optional<std::uint64_t> bytes;     ///< Of the whole file, at most.
-  std::optional<std::int64_t> triangles;  ///< At most.
-  FitMetric match = FitMetric::none;      ///< Instead of `bytes`: the smallest file that is as like as
-  double match_value = 0;  ///< this: dB, 0 … 1, or FLIP's error, over what either covers, base colour and
-                           ///< lit alike.
+  std::optional<std::int64_t> triangles;           ///< To keep at most.
   ViewOptions views{.set = ViewSet::icosahedron};  ///< That pictures are compared from.
   std::int64_t view_size = 512;  ///< Pixels along each side: how large the model will be looked at.
-  bool whole_path =
-      false;  ///< The path has choices for more than `bytes` too; with large images some seconds more.
+  Distortion distortion = Distortion::mse;  ///< What is lost in pictures.
+  FitSearch search = FitSearch::prune;
+  FitLadderSet ladders =
+      FitLadderSet::separate;  ///< Joint beyond eight meshes, or images, and for `exhaustive`.
   TextureOutput format = TextureOutput::keep;
-  WriteOptions write;          ///< As the file will be written,
-  bool binary = true;          ///< GLB, or glTF with files beside it,
-  std::string stem = "model";  ///< named after this: names take bytes too.
+  FitGives gives = FitGives::both;
+  FileForm form;                 ///< As the file will be written.
+  std::uint64_t most_bytes = 0;  ///< No larger budget will be asked for, which saves time; 0 for any.
 };
 OptionList describe(FitOptions& options);
 
@@ -38,7 +50,8 @@ OptionList describe(FitOptions& options);
 struct FitPoint {
   std::uint64_t triangles = 0;
   std::uint64_t image_bytes = 0;
-  std::uint64_t bytes = 0;  ///< Of the whole file.
+  std::uint64_t bytes = 0;  ///< Of the whole file; of points on the way at most so many.
+  double loss = 0;          ///< By FitOptions::distortion.
   double psnr_db =
       0;  ///< Of base colour and lit over what either covers, all views together; infinite if equal.
 };
@@ -46,25 +59,50 @@ struct FitPoint {
 struct FitResult {
   Model model;
   FitPoint chosen;
-  bool reached = true;  ///< Whether it keeps to the bytes, or is as like as asked.
-  std::vector<FitPoint>
-      path;                  ///< From the original down, as pruning went; the choice for any number of bytes.
-  std::size_t pictures = 0;  ///< Models that were drawn for it.
+  bool reached = true;         ///< Whether it keeps to the bytes, or is as like as asked.
+  bool cancelled = false;      ///< Whether it is only the best that was known when it was.
+  std::vector<FitPoint> path;  ///< As the ladders were walked; of `exhaustive` the lower hull of all.
+  std::size_t pictures = 0;    ///< Models drawn so far.
 };
 
 /// Spends one budget of bytes on the triangles and the texels of a model so that pictures lose least.
 ///
-/// The model is simplified once, and its images are stored in ways that take less and less (shrink.h); both
-/// make ladders, sizes in geometric progression, bytes as they will be written. Marginal analysis by pruning
-/// (marginal.h) walks down from the original. The point where it comes below the budget is held against every
-/// size of images with as many triangles as fit beside them; around the best of these, neighbouring numbers
-/// of triangles are tried with all other bytes spent on images, then more triangles as far as there is room.
-/// With `match` the walk goes on to the end, and the last point is taken that is as like as asked.
+/// The model is simplified once (mesh_ladder.h), and its images are stored in ways that take less and less
+/// (texture_ladder.h); bytes are those of what will be written. Marginal analysis (marginal.h; Horbelt,
+/// Balmelli and Vetterli 2001) walks down the ladders of meshes and images until it is within the budget. Its
+/// end is held against all sizes of all images together with as many triangles as fit beside them; around the
+/// best of these, more or fewer triangles are tried with all other bytes spent on images; then triangles are
+/// added as far as there is room, simplified anew with pictures deciding, and qualities of images tried more
+/// finely. What loses least is the result.
 ///
-/// No texels move and nothing is baked anew. Throws Error(usage) for options that do not go together,
-/// Error(unsupported) without triangles that anything shows, Error(cancelled). Cost: one `simplify`, textures
-/// as for
-/// `--texture-bytes`, and pictures of some thirty models.
-FitResult fit(const Model& model, const FitOptions& options, Context& context);
+/// No texels move and nothing is baked anew.
+class BudgetFit {
+ public:
+  /// Makes the ladders. `model` and `context` must outlive this. Throws Error(usage) for options that do not
+  /// go together, Error(unsupported) without triangles, Error(cancelled). Cost: one `simplify`, images
+  /// encoded in tens of ways.
+  BudgetFit(const Model& model, const FitOptions& options, Context& context);
+  ~BudgetFit();
+
+  /// The best of at most so many bytes, or if there is none, the smallest. What was measured for one budget
+  /// is known for the next: the walk itself costs nothing again. If cancelled, the best so far. Pictures of
+  /// about thirty models.
+  FitResult within(std::uint64_t bytes);
+
+  /// The smallest that is as like as this. Throws Error(usage) for a value that the metric does not have,
+  /// Error(cancelled).
+  FitResult like(FitMetric metric, double value);
+
+  /// The whole way from the original down.
+  std::vector<FitPoint> way();
+  /// All pairs of an exhaustive search; of others none.
+  std::vector<FitPoint> all();
+  /// The model of a point on it.
+  Model at(std::size_t point);
+
+ private:
+  class Finder;
+  std::unique_ptr<Finder> finder_;
+};
 
 }  // namespace fovea

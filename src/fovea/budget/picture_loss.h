@@ -1,35 +1,64 @@
 #pragma once
 
+#include <list>
+#include <optional>
 #include <vector>
 
 #include "fovea/base/context.h"
 #include "fovea/judge/compare.h"
+#include "fovea/judge/flip.h"
+#include "fovea/judge/ssim.h"
 #include "fovea/model/model.h"
 #include "fovea/render/render.h"
 #include "fovea/render/scene.h"
 
 namespace fovea {
 
+/// What counts as lost in pictures, over what either model covers.
+enum class Distortion {
+  mse,      ///< Mean squared difference of display values (Horbelt et al. 2001),
+  ms_ssim,  ///< 1 − MS-SSIM (Wang et al. 2003),
+  flip,     ///< FLIP's error (Andersson et al. 2020).
+};
+
 /// What models lose against one original, in the same pictures again and again.
 class PictureLoss {
  public:
   /// Draws the original from `views`, `size` × `size` pixels, base colour and lit. It must outlive this.
   /// Throws as `compare`.
-  PictureLoss(const Model& original, const ViewOptions& views, int size, Context& context);
+  PictureLoss(const Model& original, const ViewOptions& views, int size, Distortion distortion,
+              Context& context);
 
-  /// The mean squared difference of display values over what either covers, both passes and all views alike.
-  /// Images that the original or the model before had are not decoded again.
-  double squared(const Model& model);
-  /// All scores, as `compare` has them: MS-SSIM and FLIP cost several times as much.
+  struct Loss {
+    double value = 0;    ///< By the distortion, over all views and both passes alike.
+    double squared = 0;  ///< Mean squared difference of display values, 0 … 255².
+  };
+  /// Images that the original or the models before had are not decoded again, up to some 64 million texels.
+  /// MS-SSIM takes twice as long as MSE, FLIP several times.
+  Loss of(const Model& model);
+  /// All scores, as `compare` has them.
   Comparison scores(const Model& model);
 
  private:
+  /// One view of the original in one pass.
+  struct Seen {
+    Picture picture;
+    std::optional<SsimReference> ssim;
+    std::optional<FlipReference> flip;
+  };
+  /// Keeps what was decoded for a scene.
+  void keep_images(const RenderScene& scene);
+  double distortion_of(const Seen& seen, const Picture& test, const Plane& mask, double squared) const;
+
   const Model& original_;
+  Distortion distortion_;
   CompareOptions options_;
   Context& context_;
   RenderScene scene_;
   std::vector<View> views_;
-  std::vector<std::vector<Picture>> pictures_;  // [#views][#passes]
+  std::list<EncodedImage> kept_;         // what the images of `decoded_` are of, oldest first
+  RenderScene decoded_;                  // images alone
+  std::vector<std::vector<Seen>> seen_;  // [#views][#passes]
 };
 
 }  // namespace fovea

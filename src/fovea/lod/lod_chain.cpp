@@ -47,6 +47,9 @@ void check_request(const Model& model, LodChainOptions options) {
   check_list(options.triangles, false, "triangles");
   check_list(options.coverages, false, "coverage");
   check_list(options.distances, true, "distances");
+  check_list(options.bytes, false, "bytes");
+  if (!options.bytes.empty() && options.bytes.size() != options.triangles.size())
+    refuse("there are not as many numbers of bytes as of triangles", "--bytes", "give one for each level");
   if (options.simplify.per_mesh)
     refuse("levels cannot be read off meshes simplified one by one", "--per-mesh", "leave it out");
   if (std::ranges::find(model.extensions_used, "MSFT_lod") != model.extensions_used.end())
@@ -151,6 +154,7 @@ class ChainMaker {
     for (const std::uint64_t target : targets_) {
       tell();
       choices.push_back(measure.at(target));
+      if (!options_.bytes.empty()) choices.back().bytes = options_.bytes[choices.size() - 1];
       choices.back().distance = switch_distance(choices.back().error.max, radius, options_.screen);
     }
     for (const double distance : distances) {
@@ -173,18 +177,25 @@ class ChainMaker {
     level.triangles = choice.triangles;
     level.error = choice.error;
     level.distance = choice.distance;
+    level.most_bytes = choice.bytes;
     level.coverage = coverage_at(choice.distance, chain_.sphere.radius, options_.screen);
     level.pixels = pixels_at(choice.distance, choice.error.max, chain_.sphere.radius, options_.screen);
     const double height = level.coverage * static_cast<double>(options_.screen.height);
-    if (!densities_.empty()) shrink(level, height);
+    if (!densities_.empty()) shrink(level, height, choice.bytes);
     if (options_.pictures) take_pictures(level, height);
   }
 
-  void shrink(LodLevel& level, double height) {
+  void shrink(LodLevel& level, double height, std::uint64_t bytes) {
     ShrinkOptions options = options_.textures;
     options.max_bytes = std::nullopt;
-    options.scales = needed_scales(densities_, height);
-    Shrunk shrunk = shrink_textures(level.model, options, {}, context_);
+    if (bytes > 0) {
+      options.shown_pixels = height;
+    } else {
+      options.scales = needed_scales(densities_, height);
+    }
+    Shrunk shrunk = bytes > 0
+                        ? shrink_textures_within(level.model, bytes, options_.form, options, {}, context_)
+                        : shrink_textures(level.model, options, {}, context_);
     level.model = std::move(shrunk.model);
     level.images = std::move(shrunk.images);
   }

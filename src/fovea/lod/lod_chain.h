@@ -7,6 +7,7 @@
 #include "fovea/base/context.h"
 #include "fovea/base/math.h"
 #include "fovea/base/options.h"
+#include "fovea/io/file_form.h"
 #include "fovea/judge/compare.h"
 #include "fovea/lod/lod_chain_screen.h"
 #include "fovea/model/model.h"
@@ -26,6 +27,10 @@ struct LodChainOptions {
   LodScreen screen;                        ///< measured error of `pixel_error` pixels there allows.
   SimplifyOptions simplify;                ///< How; its targets do not count, `per_mesh` must be off.
   const CollapseRecord* record = nullptr;  ///< Steps that are known; nothing is simplified then.
+  /// Of the files of levels 1, 2, ... of `triangles`, as `form` says, at most: images get what the triangles
+  /// leave. Or empty.
+  std::vector<std::uint64_t> bytes;
+  FileForm form;
   bool textures_follow = true;  ///< Images get as many texels as the level has pixels where it comes in.
   ShrinkOptions textures;       ///< How; its `scales` and `max_bytes` do not count.
   std::int64_t key_poses = 4;   ///< Poses in which errors are measured, besides rest; 0 to 64.
@@ -52,6 +57,7 @@ struct LodLevel {
   /// JudgedPass, as large as the level is where it comes in, but no larger than the screen is high.
   std::array<ImageScores, 2> pictures;
   std::int64_t picture_size = 0;    ///< Pixels along each side; 0 if none were made.
+  std::uint64_t most_bytes = 0;     ///< That its file may take; 0 for any.
   std::vector<ImageChange> images;  ///< [#images] Empty if none were to change.
 };
 

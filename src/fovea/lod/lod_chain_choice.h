@@ -17,7 +17,8 @@ struct LodChoice {
   std::size_t steps = 0;
   std::uint64_t triangles = 0;
   LodError error;
-  double distance = 0;  ///< At which it comes in.
+  double distance = 0;      ///< At which it comes in.
+  std::uint64_t bytes = 0;  ///< Of its file at most; 0 for any.
 };
 
 /// The triangles that levels 1, 2, ... are to have, of a model with `total`; empty if the screen says.

@@ -19,6 +19,9 @@ namespace {
 constexpr int kMostHalvings = 5;
 constexpr int kLeastQuality = 15, kMostQuality = 98;
 
+/// PNG has no quality, so it comes in more sizes: so many for each half.
+constexpr int kPngSizes = 4;
+
 /// Of how many sizes, formats and fillings more qualities are tried.
 constexpr std::size_t kFiner = 3;
 /// WebP has half the resolution for colours, so JPEG may be better: from this quality on.
@@ -51,6 +54,15 @@ bool is_by_quarter(const Image8& image, int width, int height) {
 
 Image8 quartered(const Image8& image, const ImageUse& use, const Context& context) {
   return resized(image, image.width / 4, image.height / 4, use, context);
+}
+
+/// A side `step / sizes` times halved.
+int side_after(int whole, int step, int sizes) {
+  const int halves = step / sizes, part = step % sizes;
+  const int side = part == 0
+                       ? whole >> halves
+                       : static_cast<int>(std::lround((whole >> halves) * std::exp2(-double(part) / sizes)));
+  return std::max(1, side);
 }
 
 class Ways {
@@ -193,13 +205,22 @@ std::vector<ImageWay> image_ways(const Image8& image, const ImageLimits& limits,
                                  std::span<const AtlasFace> faces, const ImageLoss& loss,
                                  const Context& context) {
   Ways ways(image, limits, faces, loss, context);
-  for (int halvings = kMostHalvings; halvings >= 0; --halvings) {
-    const int width = std::max(1, image.width >> halvings), height = std::max(1, image.height >> halvings);
+  const int sizes = limits.format == TextureFormat::png ? kPngSizes : 1;  // from a half to the next
+  for (int step = kMostHalvings * sizes; step >= 0; --step) {
+    const auto side = [&](int whole) { return side_after(whole, step, sizes); };
+    const int width = side(image.width), height = side(image.height);
     if (width >= limits.width || height >= limits.height) break;
     if (!ways.add_size(width, height)) return ways.take();
   }
   ways.add_size(limits.width, limits.height);
   return ways.take();
+}
+
+Image8 sized_for_way(Image8 image, const ImageWay& way, const ImageUse& use, std::span<const AtlasFace> faces,
+                     const Context& context) {
+  if (way.width == image.width && way.height == image.height) return image;
+  if (way.file->fill && !faces.empty()) fill_between(image, faces, context);
+  return resized_for_way(image, way.width, way.height, use, context);
 }
 
 std::vector<ImageWay> finer_ways(std::span<const ImageWay> ways, double bytes, const Image8& image,

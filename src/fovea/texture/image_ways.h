@@ -50,6 +50,10 @@ std::vector<ImageWay> image_ways(const Image8& image, const ImageLimits& limits,
                                  std::span<const AtlasFace> faces, const ImageLoss& loss,
                                  const Context& context);
 
+/// The image that one of them encodes.
+Image8 sized_for_way(Image8 image, const ImageWay& way, const ImageUse& use, std::span<const AtlasFace> faces,
+                     const Context& context);
+
 /// More ways: of qualities near those of the three best that take no more than so many bytes, each of another
 /// size, format or filling.
 std::vector<ImageWay> finer_ways(std::span<const ImageWay> ways, double bytes, const Image8& image,

@@ -498,31 +498,21 @@ Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::sp
   return result;
 }
 
-struct TextureLadder::State {
-  State(const Model& model, const ShrinkOptions& asked, Context& told)
-      : options(asked),
-        context(told),
-        prepared(prepare(model, options.rebake)),
-        budget(texture_budget(prepared, limits_of(prepared, options), options, {}, context)) {}
-
-  ShrinkOptions options;
-  Context& context;
-  Prepared prepared;
-  TextureBudget budget;  // refers to what is prepared
-};
-
-TextureLadder::TextureLadder(const Model& model, const ShrinkOptions& options, Context& context) {
-  check_options(model, options);
-  if (!options.max_bytes || options.rebake.original != nullptr)
-    throw Error(ErrorKind::usage, "a ladder of textures is for a number of bytes, and not for baking anew");
-  state_ = std::make_unique<State>(model, options, context);
-}
-
-TextureLadder::~TextureLadder() = default;
-
-Shrunk TextureLadder::within(std::uint64_t bytes, bool refine) {
-  return shrunk(state_->prepared, state_->budget.choose(static_cast<double>(bytes), refine), state_->options,
-                {}, state_->context);
+Shrunk shrink_textures_within(const Model& model, std::uint64_t file_bytes, const FileForm& form,
+                              ShrinkOptions options, std::span<const VertexField> field, Context& context) {
+  Context quiet;
+  quiet.threads = context.threads;
+  const WrittenBytes before = written_bytes(model, form, quiet);
+  std::uint64_t most = file_bytes - std::min(file_bytes, before.rest);
+  constexpr int kTries = 4;
+  for (int i = 1;; ++i) {
+    options.max_bytes = static_cast<std::int64_t>(std::max<std::uint64_t>(most, 1));
+    Shrunk result = shrink_textures(model, options, field, context);
+    const std::uint64_t taken = written_bytes(result.model, form, quiet).total();
+    // Other sizes and formats are other words in the file, too.
+    if (taken <= file_bytes || i == kTries || most <= taken - file_bytes) return result;
+    most -= taken - file_bytes;
+  }
 }
 
 }  // namespace fovea

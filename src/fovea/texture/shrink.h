@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "fovea/base/context.h"
 #include "fovea/base/options.h"
+#include "fovea/io/file_form.h"
 #include "fovea/model/field.h"
 #include "fovea/model/model.h"
 #include "fovea/texture/atlas.h"
@@ -97,22 +97,10 @@ struct Shrunk {
 Shrunk shrink_textures(const Model& model, const ShrinkOptions& options, std::span<const VertexField> field,
                        Context& context);
 
-/// The images of a model for one number of bytes after another: what they may become is measured once.
-class TextureLadder {
- public:
-  /// `options` as for `shrink_textures`, with the most that will be asked for as `max_bytes` and without
-  /// baking anew. `model` and `context` must outlive this. Throws as `shrink_textures`. Seconds for large
-  /// images.
-  TextureLadder(const Model& model, const ShrinkOptions& options, Context& context);
-  ~TextureLadder();
-
-  /// Images that take at most so many bytes together, or as few as there are. With `refine` more qualities
-  /// are tried, as `shrink_textures` does; some seconds more for large images.
-  Shrunk within(std::uint64_t bytes, bool refine);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
+/// The same with `max_bytes` chosen so that the whole file takes at most so many: what it takes beside its
+/// images is left as it is. If that is too much already, images take as few bytes as they can. Twice the
+/// cost, at most four times.
+Shrunk shrink_textures_within(const Model& model, std::uint64_t file_bytes, const FileForm& form,
+                              ShrinkOptions options, std::span<const VertexField> field, Context& context);
 
 }  // namespace fovea

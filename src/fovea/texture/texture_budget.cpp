@@ -1,6 +1,7 @@
 #include "fovea/texture/texture_budget.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "fovea/base/error.h"
@@ -153,11 +154,11 @@ TextureBudget::Numbers TextureBudget::numbers_within(double bytes) const {
   return numbers;
 }
 
-std::vector<WantedImage> TextureBudget::wanted(const Numbers& numbers) const {
+std::vector<WantedImage> TextureBudget::wanted(std::span<const std::size_t> ways) const {
   std::vector<WantedImage> images = limits_;
-  for (std::size_t c = 0; c < numbers.size(); ++c) {
-    const ImageWay& way = candidates_[c].ways[numbers[c]];
-    WantedImage& image = images[candidates_[c].image];
+  for (const Candidate& candidate : candidates_) {
+    const ImageWay& way = candidate.ways[ways[candidate.image]];
+    WantedImage& image = images[candidate.image];
     if (!way.file) continue;
     const bool is_limit = way.width == image.width && way.height == image.height;
     const SizeReason reason = is_limit && image.reason != SizeReason::none ? image.reason : SizeReason::bytes;
@@ -166,17 +167,56 @@ std::vector<WantedImage> TextureBudget::wanted(const Numbers& numbers) const {
   return images;
 }
 
-std::vector<WantedImage> TextureBudget::choose(double bytes, bool refine) {
+std::vector<std::size_t> TextureBudget::choose_ways(double bytes, bool refine) {
   const double room = bytes - kept_bytes_;
-  const Numbers first = numbers_within(room);
-  if (!refine) return wanted(first);
-  double left = room;
-  for (std::size_t c = 0; c < candidates_.size(); ++c) left -= candidates_[c].ways[first[c]].bytes;
-  parallel_for_or_throw(context_, candidates_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c)
-      this->refine(candidates_[c], candidates_[c].ways[first[c]].bytes + left);
-  });
-  return wanted(numbers_within(room));
+  Numbers numbers = numbers_within(room);
+  if (refine) {
+    double left = room;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) left -= candidates_[c].ways[numbers[c]].bytes;
+    parallel_for_or_throw(context_, candidates_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c)
+        this->refine(candidates_[c], candidates_[c].ways[numbers[c]].bytes + left);
+    });
+    numbers = numbers_within(room);
+  }
+  std::vector<std::size_t> ways(limits_.size(), kNoWay);
+  for (std::size_t c = 0; c < candidates_.size(); ++c) ways[candidates_[c].image] = numbers[c];
+  return ways;
+}
+
+std::vector<WantedImage> TextureBudget::choose(double bytes, bool refine) {
+  return wanted(choose_ways(bytes, refine));
+}
+
+const TextureBudget::Candidate* TextureBudget::find(std::size_t image) const {
+  const auto found = std::ranges::find(candidates_, image, &Candidate::image);
+  return found == candidates_.end() ? nullptr : &*found;
+}
+
+std::span<const ImageWay> TextureBudget::ways(std::size_t image) const {
+  const Candidate* candidate = find(image);
+  return candidate == nullptr ? std::span<const ImageWay>() : candidate->ways;
+}
+
+double TextureBudget::loss(std::size_t image, const ImageWay& way) const {
+  const Candidate* candidate = find(image);
+  if (candidate == nullptr) return 0;
+  Sums sums(2 * pixels_.size());
+  add(sums, *candidate, way);
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+std::vector<std::uint8_t> TextureBudget::encoded(std::size_t image, const ImageWay& way) {
+  const EncodedImage& file = model_.images[image];
+  if (!way.file) return file.bytes;
+  const auto [format, quality, fill] = *way.file;
+  const auto [known, is_new] = sized_.try_emplace({image, way.width, way.height, fill});
+  if (is_new) {
+    const ImageUse& use = uses_[image];
+    known->second = sized_for_way(without_idle_alpha(decode_image(file.bytes), use), way, use,
+                                  known_faces(*find(image)), context_);
+  }
+  return encode_texture(known->second, format, quality);
 }
 
 }  // namespace fovea

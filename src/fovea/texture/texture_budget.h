@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "fovea/base/context.h"
@@ -40,6 +43,16 @@ class TextureBudget {
   /// least; the fewest bytes of all if none do. With `refine` more qualities are tried near those: some
   /// seconds for large images.
   std::vector<WantedImage> choose(double bytes, bool refine);
+  /// The same as numbers of ways [#images], `kNoWay` for images that stay as they are.
+  std::vector<std::size_t> choose_ways(double bytes, bool refine);
+
+  static constexpr std::size_t kNoWay = static_cast<std::size_t>(-1);
+  /// Those known so far; more come at the end. Empty for images that stay as they are.
+  std::span<const ImageWay> ways(std::size_t image) const;
+  /// What all pictures lose by a way to store the image, as they count for the whole model.
+  double loss(std::size_t image, const ImageWay& way) const;
+  /// The file of a way, the same as was measured.
+  std::vector<std::uint8_t> encoded(std::size_t image, const ImageWay& way);
 
  private:
   struct Candidate {
@@ -62,7 +75,8 @@ class TextureBudget {
   void add(Sums& sums, const Candidate& candidate, const ImageWay& way) const;
   /// What loses least of what takes no more than so many bytes.
   Numbers numbers_within(double bytes) const;
-  std::vector<WantedImage> wanted(const Numbers& numbers) const;
+  std::vector<WantedImage> wanted(std::span<const std::size_t> ways) const;
+  const Candidate* find(std::size_t image) const;
 
   const Model& model_;
   std::span<const ImageChange::State> files_;
@@ -75,6 +89,8 @@ class TextureBudget {
   std::vector<ImageUse> uses_;
   std::vector<Candidate> candidates_;
   double kept_bytes_ = 0;
+  /// By image, width, height and filling: smaller images that were encoded.
+  std::map<std::tuple<std::size_t, int, int, bool>, Image8> sized_;
 };
 
 }  // namespace fovea
