@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -41,7 +42,7 @@ void check_likeness(FitMetric metric, double value) {
 class BudgetFit::Finder {
  public:
   Finder(const Model& model, const FitOptions& options, Context& context)
-      : options_(prepared(options)), context_(context), ladders_(model, options_, context) {}
+      : options_(prepared(options)), ladders_(model, options_, context), weights_(model.images.size(), 1.0) {}
 
   FitResult within(std::uint64_t bytes) {
     FitResult result;
@@ -169,6 +170,7 @@ class BudgetFit::Finder {
     result.reached = best_.has_value();
     if (!result.reached) return take_smallest();
     try_shares();
+    try_weights();
     add_triangles();
     choose_triangles();
     refine_images();
@@ -232,7 +234,7 @@ class BudgetFit::Finder {
   /// sizes (PNG), a single step down can be too large to be taken, and two of them worth it.
   void try_image_levels() {
     // Not what is far from the best so far.
-    constexpr std::uint64_t kFar = 5;
+    constexpr std::uint64_t kFar = 3;
     const std::uint64_t now = best_ ? ladders_.image_bytes(best_->choice) : 0;
     for (const std::vector<std::size_t>& ways : ladders_.image_levels()) {
       FitChoice choice = ladders_.whole();
@@ -266,21 +268,67 @@ class BudgetFit::Finder {
 
   /// More and fewer triangles than the best has, with all other bytes spent on images.
   void try_shares() {
+    if (ladders_.textures() == nullptr) return;
+    const FitChoice base = best_->choice;
+    try_share(base, 1);
+    for (const double step : {0.8, 1.25}) {
+      bool gains = false;
+      for (double share = step; share > 0.2 && share < 5 && try_share(base, share); share *= step) gains = true;
+      if (gains) return;  // there is nothing on the other side then
+    }
+  }
+
+  /// What images get beside this share of the triangles' bytes; nothing if that leaves them none.
+  double room_beside(const FitChoice& base, const FitChoice& choice) {
+    return static_cast<double>(bytes_) - ladders_.mesh_bytes(choice) + ladders_.mesh_bytes(base) +
+           static_cast<double>(ladders_.image_bytes(base)) - static_cast<double>(ladders_.bytes(base));
+  }
+
+  /// Whether it is better than the best so far.
+  bool try_share(const FitChoice& base, double share) {
+    TextureLadders& textures = *ladders_.textures();
+    const double before = best_->loss.value;
+    FitChoice choice = base;
+    choice.steps = ladders_.steps_within(base.steps, share * ladders_.mesh_bytes(base));
+    const double room = room_beside(base, choice);
+    if (room <= 0) return false;
+    // As estimates have it; and with what pictures chose as the least.
+    const std::vector<std::size_t> wanted = textures.within(static_cast<std::uint64_t>(room), false);
+    choice.ways = wanted;
+    consider(choice);
+    if (options_.ladders == FitLadderSet::separate && static_cast<double>(ladders_.image_bytes(base)) <= room) {
+      choice.ways = textures.filled(base.ways, static_cast<std::uint64_t>(room));
+      if (choice.ways != wanted) consider(choice);
+    }
+    return best_->loss.value < before;
+  }
+
+  /// Bytes moved from some images to others, as pictures want it: estimates do not know what light makes of them.
+  void try_weights() {
     TextureLadders* const textures = ladders_.textures();
     if (textures == nullptr) return;
-    const FitChoice base = best_->choice;
-    const double taken = ladders_.mesh_bytes(base);
-    const double other = static_cast<double>(ladders_.bytes(base) - ladders_.image_bytes(base)) - taken;
-    for (const double share : {0.7, 0.85, 1.0, 1.2, 1.45}) {
-      FitChoice choice = base;
-      choice.steps = ladders_.steps_within(base.steps, share * taken);
-      const double room = static_cast<double>(bytes_) - other - ladders_.mesh_bytes(choice);
-      if (room <= 0) continue;
-      choice.ways = textures->within(static_cast<std::uint64_t>(room), false);
-      consider(choice);
-      if (static_cast<double>(ladders_.image_bytes(base)) > room) continue;
-      choice.ways = textures->filled(base.ways, static_cast<std::uint64_t>(room));
-      consider(choice);
+    constexpr std::size_t kMostImages = 8;
+    std::vector<std::size_t> images;
+    for (std::size_t i = 0; i < textures->rungs().size(); ++i)
+      if (textures->rungs()[i].size() > 1) images.push_back(i);
+    if (images.size() < 2) return;
+    std::ranges::stable_sort(images, std::greater(),
+                             [&](std::size_t i) { return textures->rungs()[i].front().bytes; });
+    images.resize(std::min(images.size(), kMostImages));
+    for (const std::size_t image : images) {
+      for (const double factor : {4.0, 0.25}) {
+        const FitChoice base = best_->choice;
+        const double before = best_->loss.value;
+        textures->set_weight(image, weights_[image] * factor);
+        FitChoice choice = base;
+        choice.ways = textures->within(static_cast<std::uint64_t>(room_beside(base, base)), false);
+        if (choice.ways != base.ways) consider(choice);
+        if (best_->loss.value < before) {
+          weights_[image] *= factor;
+          break;
+        }
+        textures->set_weight(image, weights_[image]);
+      }
     }
   }
 
@@ -370,8 +418,8 @@ class BudgetFit::Finder {
   }
 
   const FitOptions options_;
-  Context& context_;
   FitLadders ladders_;
+  std::vector<double> weights_;  // [#images] as `TextureLadders::set_weight`
   std::uint64_t bytes_ = 0;
   std::optional<Best> best_;
   std::vector<JointPoint> all_;  // of an exhaustive search

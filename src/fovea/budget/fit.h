@@ -38,7 +38,7 @@ struct FitOptions {
   Distortion distortion = Distortion::mse;  ///< What is lost in pictures.
   FitSearch search = FitSearch::prune;
   FitLadderSet ladders =
-      FitLadderSet::separate;  ///< Joint beyond eight meshes, or images, and for `exhaustive`.
+      FitLadderSet::joint;  ///< Always beyond eight meshes, or images, and for `exhaustive`.
   TextureOutput format = TextureOutput::keep;
   FitGives gives = FitGives::both;
   FileForm form;                 ///< As the file will be written.

@@ -51,7 +51,7 @@ TextureBudget::TextureBudget(const Model& model, std::span<const ImageChange::St
     std::vector<Candidate> found;
     for (const int image : atlases[a].images) {
       const auto i = static_cast<std::size_t>(image);
-      if (!uses_[i].is_ambiguous) found.push_back({i, &atlases[a], area});
+      if (!uses_[i].is_ambiguous) found.push_back({i, &atlases[a], area, 1, {}, {}});
     }
     parallel_for_or_throw(context, found.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) measure(found[i]);
@@ -107,15 +107,15 @@ std::vector<AtlasFace> TextureBudget::known_faces(const Candidate& candidate) co
 void TextureBudget::add(Sums& sums, const Candidate& candidate, const ImageWay& way) const {
   const TexelMeaning& meaning = uses_[candidate.image].meaning;
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
-    const double loss = candidate.area * way.losses[p];
+    const double loss = area(candidate) * way.losses[p];
     if (meaning.kind == TexelMeaning::Kind::color) sums[2 * p] += loss;
     sums[2 * p + 1] += loss * lit_weight(meaning);
   }
 }
 
 TextureBudget::Numbers TextureBudget::numbers_within(double bytes) const {
-  double area = 0;
-  for (const Candidate& candidate : candidates_) area += candidate.area;
+  double whole = 0;
+  for (const Candidate& candidate : candidates_) whole += area(candidate);
   // At first a picture counts by what it loses in the mean over all ways.
   Sums sums(2 * pixels_.size());
   for (const Candidate& candidate : candidates_) {
@@ -135,7 +135,7 @@ TextureBudget::Numbers TextureBudget::numbers_within(double bytes) const {
         add(lost, candidate, candidate.ways[w]);
         double loss = 0;
         for (std::size_t c = 0; c < sums.size(); ++c)
-          loss += lost[c] / std::max(sums[c], area * kLeastImageLoss);
+          loss += lost[c] / std::max(sums[c], whole * kLeastImageLoss);
         own.push_back({w, candidate.ways[w].bytes, loss});
       }
       ladders.push_back(lower_hull(own));
@@ -191,6 +191,11 @@ std::vector<WantedImage> TextureBudget::choose(double bytes, bool refine) {
 const TextureBudget::Candidate* TextureBudget::find(std::size_t image) const {
   const auto found = std::ranges::find(candidates_, image, &Candidate::image);
   return found == candidates_.end() ? nullptr : &*found;
+}
+
+void TextureBudget::set_weight(std::size_t image, double weight) {
+  for (Candidate& candidate : candidates_)
+    if (candidate.image == image) candidate.weight = weight;
 }
 
 std::span<const ImageWay> TextureBudget::ways(std::size_t image) const {

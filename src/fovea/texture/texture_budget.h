@@ -47,6 +47,8 @@ class TextureBudget {
   std::vector<std::size_t> choose_ways(double bytes, bool refine);
 
   static constexpr std::size_t kNoWay = static_cast<std::size_t>(-1);
+  /// Makes what is lost of an image count so many times.
+  void set_weight(std::size_t image, double weight);
   /// Those known so far; more come at the end. Empty for images that stay as they are.
   std::span<const ImageWay> ways(std::size_t image) const;
   /// What all pictures lose by a way to store the image, as they count for the whole model.
@@ -58,7 +60,8 @@ class TextureBudget {
   struct Candidate {
     std::size_t image = 0;
     const Atlas* atlas = nullptr;
-    double area = 0;  // of the surface that shows it, as it is looked at
+    double area = 0;    // of the surface that shows it, as it is looked at
+    double weight = 1;  // of what is lost
     ImageLimits limits{};
     std::vector<ImageWay> ways{};
   };
@@ -77,6 +80,7 @@ class TextureBudget {
   Numbers numbers_within(double bytes) const;
   std::vector<WantedImage> wanted(std::span<const std::size_t> ways) const;
   const Candidate* find(std::size_t image) const;
+  double area(const Candidate& candidate) const { return candidate.area * candidate.weight; }
 
   const Model& model_;
   std::span<const ImageChange::State> files_;

@@ -82,6 +82,8 @@ std::vector<std::size_t> TextureLadders::within(std::uint64_t bytes, bool refine
   return ways;
 }
 
+void TextureLadders::set_weight(std::size_t image, double weight) { state_->budget.set_weight(image, weight); }
+
 std::vector<std::size_t> TextureLadders::filled(std::vector<std::size_t> ways, std::uint64_t bytes) const {
   std::vector<std::vector<LadderStep>> steps;
   for (std::size_t i = 0; i < ways.size(); ++i) {
