@@ -23,6 +23,9 @@ constexpr int kSmallest = 8;              // of the smooth part
 constexpr float kRound = 1.0f / 3;        // magnitudes of 2/3 and more become 1
 constexpr float kLeastStep = 1.0f / 256;  // Multiples stay below 2^30.
 constexpr float kMiddle = 128;
+/// Coefficients on either side of what is seen that stay: waves reach some four to each side, but hardly so
+/// far.
+constexpr std::int64_t kReach = 1;
 
 int half(int size) { return (size + 1) / 2; }
 
@@ -358,10 +361,10 @@ PrunedWavelets pruned(const WaveletImage& wavelets, const ResolutionMap& map, do
   for (const Band& band : bands_of(wavelets.width, wavelets.height, wavelets.levels)) {
     const double least = std::exp2(octaves - band.level);
     const auto cells = [&](int i, int count) {
-      const std::int64_t first = std::int64_t{i} << band.level,
-                         last = ((std::int64_t{i} + 1) << band.level) - 1;
+      const std::int64_t first = (std::int64_t{i} - kReach) << band.level,
+                         last = ((std::int64_t{i} + kReach + 1) << band.level) - 1;
       const auto cell = [&](std::int64_t texel) {
-        return static_cast<int>(std::min<std::int64_t>(texel / ResolutionMap::kCell, count - 1));
+        return static_cast<int>(std::clamp<std::int64_t>(texel / ResolutionMap::kCell, 0, count - 1));
       };
       return std::array{cell(first), cell(last)};
     };

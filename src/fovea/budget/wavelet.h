@@ -50,8 +50,9 @@ struct PrunedWavelets {
 
 /// Leaves out what cannot be seen from 2^`octaves` times as far as `map` was made for: coefficients of level
 /// l (1 the finest) stand for waves of 2^l to 2^(l + 1) texels, and a picture shows waves of two pixels and
-/// longer, so they stay where a texel takes at least 2^(octaves − l) pixels. The smooth part always stays.
-/// (Horbelt, Balmelli and Vetterli 2001, with d = d₀ 2^octaves; what stays from far also stays from nearby.)
+/// longer, so they stay where a texel takes at least 2^(octaves − l) pixels, and next to there, as waves
+/// reach beyond their places. The smooth part always stays. (Horbelt, Balmelli and Vetterli 2001, with d = d₀
+/// 2^octaves; what stays from far also stays from nearby.)
 PrunedWavelets pruned(const WaveletImage& wavelets, const ResolutionMap& map, double octaves);
 
 /// All of it in few bytes: band by band from the coarsest, squares without any coefficient as a bit, the rest
