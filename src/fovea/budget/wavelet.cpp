@@ -268,8 +268,9 @@ WaveletImage empty_like(const WaveletImage& wavelets) {
   return copy;
 }
 
+/// 0 for what is not a number: damaged codes may hold anything.
 std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 255.0f)));
+  return value > 0 ? static_cast<std::uint8_t>(std::lround(std::min(value, 255.0f))) : std::uint8_t{0};
 }
 
 /// Brightness and differences of a texel in its first three channels, and back.
