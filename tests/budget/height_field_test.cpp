@@ -12,8 +12,12 @@
 
 #include "fovea/base/error.h"
 #include "fovea/base/random.h"
+#include "fovea/io/read.h"
+#include "fovea/io/write.h"
+#include "fovea/sample/sample.h"
 #include "fovea/surface/topology.h"
 #include "support/meshes.h"
+#include "support/reading.h"
 #include "support/textured.h"
 
 namespace fovea {
@@ -184,6 +188,28 @@ TEST(HeightField, OfABlockOnlyTheTopCounts) {
   EXPECT_EQ(cube.columns, 2);
   EXPECT_EQ(cube.rows, 2);
   EXPECT_EQ(cube.other_faces, 10u);
+}
+
+TEST(HeightField, OfTheSampleAlsoFromAFileOfIntegers) {
+  Context context;
+  const Model sample = make_sample("terrain", 0.05, context);
+  const test::TempFolder folder;
+  WriteOptions options;
+  options.quantize = true;
+  write_model(sample, folder.path() / "land.glb", options, context);
+  const Model read = read_model(folder.path() / "land.glb", {}, context);
+  for (const Model* model : {&sample, &read}) {
+    const HeightFieldSearch search = find_height_field(*model);
+    ASSERT_TRUE(search.field) << search.why_not;
+    EXPECT_EQ(search.field->columns, 46);  // 200 √0.05 cells
+    EXPECT_EQ(search.field->rows, 46);
+    EXPECT_EQ(search.field->layers.size(), 2u);
+    EXPECT_EQ(search.field->other_faces, counts(*model).triangles - 2 * 45 * 45) << "walls and underside";
+    const QuadtreeLevels levels(*search.field, HeightError::largest);
+    const TriMesh level = levels.level(levels.splits_to(500));
+    EXPECT_NO_THROW(check(level));
+    expect_no_cracks(*search.field, level);
+  }
 }
 
 class Grids : public testing::TestWithParam<std::array<int, 2>> {};
