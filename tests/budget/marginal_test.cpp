@@ -58,6 +58,24 @@ TEST(Marginal, PruningWalksTheHullWhereLossesAddUp) {
   }
 }
 
+TEST(Marginal, LongerStepsGetPastBadRungs) {
+  // Every other rung of the first ladder loses nearly as much as the one below it.
+  Problem problem(3);
+  for (std::size_t i = 1; i + 1 < problem.loss_of[0].size(); i += 2)
+    problem.loss_of[0][i] = 0.95 * problem.loss_of[0][i + 1] + 0.05 * problem.loss_of[0][i - 1];
+  const std::vector<JointPoint> hull = lower_hull(exhaust(problem.ladders));
+  const auto found = [&](std::size_t ahead) {
+    const std::vector<JointPoint> path = prune(problem.ladders, 0, ahead);
+    return std::ranges::count_if(hull, [&](const JointPoint& best) {
+      return std::ranges::any_of(path, [&](const JointPoint& p) { return p.rungs == best.rungs; });
+    });
+  };
+  EXPECT_EQ(found(2), std::ssize(hull));
+  EXPECT_EQ(found(2), found(3));
+  EXPECT_LT(found(1), std::ssize(hull));
+  EXPECT_EQ(prune(problem.ladders, 0, 2).back().rungs, (Rungs{13, 13}));
+}
+
 TEST(Marginal, PruningIsNearTheHullWhereLossesAlmostAddUp) {
   for (std::uint64_t seed = 1; seed < 30; ++seed) {
     Problem problem(seed, -0.2);

@@ -182,6 +182,26 @@ TEST(ImageCodec, PngOf16BitsIsRounded) {
   }
 }
 
+TEST(ImageCodec, PngOf16BitsKeepsThemWhereAsked) {
+  const ImageF image = decode_deep_image(make_png(8, 2, {16, PNG_COLOR_TYPE_GRAY}));
+  ASSERT_EQ(image.channels, 1);
+  for (int i = 0; i < 16; ++i) {
+    const int sample = (2 * i) * 256 + 2 * i + 1;
+    EXPECT_EQ(image.pixels[static_cast<std::size_t>(i)], static_cast<float>(sample) / 65535);
+  }
+  // Others are as they are.
+  for (const auto& encoded :
+       {make_png(4, 2, {8, PNG_COLOR_TYPE_RGB}), make_png(4, 1, {4, PNG_COLOR_TYPE_PALETTE}),
+        encode_jpeg(picture(16, 8, 3), 90)}) {
+    const Image8 plain = decode_image(encoded);
+    const ImageF deep = decode_deep_image(encoded);
+    ASSERT_EQ(deep.pixels.size(), plain.pixels.size());
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+      EXPECT_EQ(deep.pixels[i], static_cast<float>(plain.pixels[i]) / 255);
+  }
+  EXPECT_THROW(decode_deep_image(make_png(8, 2, {16, PNG_COLOR_TYPE_GRAY}), 15), Error);
+}
+
 TEST(ImageCodec, PngPalettesAreExpanded) {
   // 4 bits per pixel: the first byte, 0, is two pixels of colour 0, the second, 1, colours 0 and 1.
   const Image8 image = decode_image(make_png(4, 1, {4, PNG_COLOR_TYPE_PALETTE}));

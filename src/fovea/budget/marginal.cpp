@@ -40,10 +40,11 @@ Rungs moved(Rungs rungs, std::size_t ladder, int by) {
 
 }  // namespace
 
-std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes) {
-  /// What the next step of a ladder loses for each byte, and where that was measured.
+std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes, std::size_t ahead) {
+  /// What the next step of a ladder loses for each byte, how far it goes, and where that was measured.
   struct Next {
     double slope = 0;
+    int rungs = 1;
     Rungs from;
   };
   Measured measured(ladders);
@@ -52,7 +53,13 @@ std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes) 
   while (path.back().bytes > bytes) {
     const JointPoint at = path.back();
     const auto measure = [&](std::size_t ladder) {
-      next[ladder] = Next{slope(at, measured(moved(at.rungs, ladder, 1))), at.rungs};
+      next[ladder].reset();
+      for (std::size_t n = 1;
+           n <= std::max<std::size_t>(ahead, 1) && at.rungs[ladder] + n < ladders.rungs[ladder]; ++n) {
+        const int by = static_cast<int>(n);
+        const double lost = slope(at, measured(moved(at.rungs, ladder, by)));
+        if (!next[ladder] || lost < next[ladder]->slope) next[ladder] = Next{lost, by, at.rungs};
+      }
     };
     std::optional<std::size_t> best;
     for (std::size_t l = 0; l < next.size(); ++l) {
@@ -65,8 +72,8 @@ std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes) 
       measure(*best);
       continue;  // another may be better now
     }
+    path.push_back(measured(moved(at.rungs, *best, next[*best]->rungs)));
     next[*best].reset();
-    path.push_back(measured(moved(at.rungs, *best, 1)));
   }
   return path;
 }

@@ -32,7 +32,11 @@ struct JointPoint {
 /// What a step loses is measured when it comes up and kept until its own ladder moves on, as losses of meshes
 /// and of textures nearly add up; before a step is taken, one that was measured elsewhere is measured again.
 /// Losses are asked for about once or twice for each step taken.
-std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes);
+///
+/// A step goes down one rung, or up to `ahead` of them if that loses less for each byte: where losses rise by
+/// fits and starts, a rung that is bad for its bytes hides a good one below it, and one at a time never gets
+/// there. What a step passes over is not on the way. 0 is taken for 1.
+std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes, std::size_t ahead = 1);
 
 /// The other way: from the smallest of all up, the step that gains most for each byte, while they are within
 /// `bytes`. Every point on the way. Empty if the smallest takes more.

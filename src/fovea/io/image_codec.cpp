@@ -148,6 +148,19 @@ Image8 decode_image(Encoded encoded, std::int64_t max_pixels) {
   throw Error(ErrorKind::unsupported, "the image is not of a known format", {}, "known: PNG, JPEG, WebP");
 }
 
+ImageF decode_deep_image(Encoded encoded, std::int64_t max_pixels) {
+  const ImageInfo info = image_info(encoded);
+  if (info.mime_type == "image/png") {
+    check_size(info, max_pixels);
+    return decode_deep_png(encoded);
+  }
+  const Image8 image = decode_image(encoded, max_pixels);
+  ImageF deep(image.width, image.height, image.channels, image.encoding);
+  std::ranges::transform(image.pixels, deep.pixels.begin(),
+                         [](std::uint8_t v) { return static_cast<float>(v) / 255; });
+  return deep;
+}
+
 std::vector<std::uint8_t> encode_png(const Image8& image) {
   check_image(image, 4);
   return compress_png(image);

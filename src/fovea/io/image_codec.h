@@ -24,6 +24,9 @@ ImageInfo image_info(std::span<const std::uint8_t> encoded);
 /// Throws Error(format) for damaged data, Error(unsupported) for other formats, Error(limit) beyond
 /// `max_pixels`.
 Image8 decode_image(std::span<const std::uint8_t> encoded, std::int64_t max_pixels = std::int64_t{1} << 28);
+/// The same as 0 … 1, with all bits of PNG images of 16: for heights, of which 256 are steps.
+ImageF decode_deep_image(std::span<const std::uint8_t> encoded,
+                         std::int64_t max_pixels = std::int64_t{1} << 28);
 
 std::vector<std::uint8_t> encode_png(const Image8& image);
 /// quality 1..100; 1 or 3 channels (alpha is not JPEG's: Error(usage)). No chroma subsampling from

@@ -60,13 +60,18 @@ struct Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  /// Up to the first pixel, with everything set for 8 bits per channel and no palette.
-  bool read_header() {
+  /// Up to the first pixel, with everything set for 8 bits per channel, or 16 where the file has them and
+  /// `is_deep`, and no palette.
+  bool read_header(bool is_deep) {
     if (!info || setjmp(png_jmpbuf(png))) return false;
     png_set_read_fn(png, &source, on_read);
     png_read_info(png, info);
     png_set_expand(png);
-    png_set_scale_16(png);
+    if (is_deep) {
+      png_set_swap(png);  // the file has the high byte first
+    } else {
+      png_set_scale_16(png);
+    }
     png_set_interlace_handling(png);
     png_read_update_info(png, info);
     return true;
@@ -82,11 +87,20 @@ struct Reader {
   }
 };
 
-std::vector<png_bytep> rows_of(Image8& image) {
+/// The beginnings of rows in `pixels`.
+std::vector<png_bytep> rows_of(std::uint8_t* pixels, int height, std::size_t row_bytes) {
   std::vector<png_bytep> rows;
-  rows.reserve(static_cast<std::size_t>(image.height));
-  for (int y = 0; y < image.height; ++y) rows.push_back(image.at(0, y));
+  rows.reserve(static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) rows.push_back(pixels + static_cast<std::size_t>(y) * row_bytes);
   return rows;
+}
+
+/// An image of the size that a header tells.
+template <class T>
+Image<T> sized(const Reader& reader) {
+  return Image<T>(static_cast<int>(png_get_image_width(reader.png, reader.info)),
+                  static_cast<int>(png_get_image_height(reader.png, reader.info)),
+                  static_cast<int>(png_get_channels(reader.png, reader.info)), ColorEncoding::srgb);
 }
 
 void on_write(png_structp png, png_bytep from, std::size_t count) {
@@ -128,16 +142,35 @@ struct PngWriter {
 
 Image8 decode_png(std::span<const std::uint8_t> encoded) {
   Reader reader(encoded);
-  if (!reader.read_header()) reader.fail();
-  Image8 image(static_cast<int>(png_get_image_width(reader.png, reader.info)),
-               static_cast<int>(png_get_image_height(reader.png, reader.info)),
-               static_cast<int>(png_get_channels(reader.png, reader.info)), ColorEncoding::srgb);
-  if (png_get_rowbytes(reader.png, reader.info) !=
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels)) {
+  if (!reader.read_header(false)) reader.fail();
+  auto image = sized<std::uint8_t>(reader);
+  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
+  if (row_bytes != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels)) {
     throw Error(ErrorKind::internal, "a PNG image was not reduced to 8 bits");
   }
-  std::vector<png_bytep> rows = rows_of(image);
+  std::vector<png_bytep> rows = rows_of(image.pixels.data(), image.height, row_bytes);
   if (!reader.read_rows(rows.data())) reader.fail();
+  return image;
+}
+
+ImageF decode_deep_png(std::span<const std::uint8_t> encoded) {
+  Reader reader(encoded);
+  if (!reader.read_header(true)) reader.fail();
+  auto image = sized<float>(reader);
+  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
+  const std::size_t numbers =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
+  const bool is_deep = row_bytes == 2 * numbers;
+  if (!is_deep && row_bytes != numbers) {
+    throw Error(ErrorKind::internal, "a PNG image was not reduced to whole bytes");
+  }
+  std::vector<std::uint8_t> bytes(row_bytes * static_cast<std::size_t>(image.height));
+  std::vector<png_bytep> rows = rows_of(bytes.data(), image.height, row_bytes);
+  if (!reader.read_rows(rows.data())) reader.fail();
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const int low = bytes[is_deep ? 2 * i : i], high = is_deep ? bytes[2 * i + 1] : 0;
+    image.pixels[i] = static_cast<float>(low + 256 * high) / (is_deep ? 65535.0f : 255.0f);
+  }
   return image;
 }
 

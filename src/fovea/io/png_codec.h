@@ -11,6 +11,8 @@
 namespace fovea {
 
 Image8 decode_png(std::span<const std::uint8_t> encoded);
+/// With all bits of 16-bit images.
+ImageF decode_deep_png(std::span<const std::uint8_t> encoded);
 std::vector<std::uint8_t> compress_png(const Image8& image);
 
 }  // namespace fovea

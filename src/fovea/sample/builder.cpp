@@ -28,13 +28,17 @@ EncodedImage encode(const Image8& image, ImageFormat format, const std::string& 
 }  // namespace
 
 int add_material(Model& model, const PaintedMaterial& painted, const Image8& base_color) {
+  return add_material(model, painted, encode(base_color, painted.format, painted.name));
+}
+
+int add_material(Model& model, const PaintedMaterial& painted, EncodedImage base_color) {
   Sampler sampler;
   sampler.wrap_u = sampler.wrap_v = painted.tiled ? Wrap::repeat : Wrap::clamp;
   sampler.mag_filter = kLinear;
   sampler.min_filter = kTrilinear;
   Texture texture;
   texture.name = painted.name;
-  texture.image = append(model.images, encode(base_color, painted.format, painted.name));
+  texture.image = append(model.images, std::move(base_color));
   texture.sampler = append(model.samplers, std::move(sampler));
   Material material;
   material.name = painted.name;

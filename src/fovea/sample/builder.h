@@ -24,6 +24,8 @@ struct PaintedMaterial {
 
 /// Appends it to the model and returns the material's index.
 int add_material(Model& model, const PaintedMaterial& material, const Image8& base_color);
+/// The same with an image that is encoded already.
+int add_material(Model& model, const PaintedMaterial& material, EncodedImage base_color);
 
 /// Welds the parts to a mesh and appends it with a node that shows it. Returns the node's index.
 int add_mesh(Model& model, const std::string& name, const std::vector<SplitPart>& parts, Context& context);

@@ -1,0 +1,545 @@
+// The experiment of Horbelt, Balmelli and Vetterli (2001) as Markdown, some minutes: one view of land, 60
+// meshes and 32 textures of it from a tenth down to a thousandth, all pairs drawn, and what marginal analysis
+// finds of them. terrain_bench [--points FILE] [--views FOLDER]
+//   --points   all pairs as CSV, with which ways pass them
+//   --views    the view of each land, whole and at its smallest, as PNG
+// Land is Fovea's own sample and, if FOVEA_DATA names a folder with terrain/, Puget Sound of it.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fovea/base/error.h"
+#include "fovea/base/parallel.h"
+#include "fovea/budget/height_field.h"
+#include "fovea/budget/marginal.h"
+#include "fovea/budget/seen_detail.h"
+#include "fovea/budget/wavelet.h"
+#include "fovea/io/gltf_write.h"
+#include "fovea/io/image_codec.h"
+#include "fovea/io/image_file.h"
+#include "fovea/io/read.h"
+#include "fovea/model/image_error.h"
+#include "fovea/render/render.h"
+#include "fovea/sample/sample.h"
+#include "fovea/simplify/simplify.h"
+#include "fovea/texture/shrink.h"
+#include "measure.h"
+#include "subjects.h"
+
+namespace fovea::bench {
+namespace {
+
+constexpr int kMeshes = 60, kTextures = 32;
+constexpr double kMost = 0.1, kLeast = 0.001;  // of the vertices and of the coefficients
+constexpr int kSize = 512;
+constexpr std::size_t kAhead = 3;  // rungs to a step, at most
+constexpr float kStep = 8;
+
+/// Sizes of ladders in geometric progression, from the largest.
+double share(int rung, int rungs) {
+  return kMost * std::pow(kLeast / kMost, static_cast<double>(rung) / (rungs - 1));
+}
+
+/// Land to look at.
+struct Land {
+  std::string name;
+  Model model;  ///< Without walls.
+  HeightField field;
+  View view;
+};
+
+std::uint64_t geometry_bytes(Model model, Context& context) {
+  WriteOptions options;
+  options.quantize = true;
+  options.compression = GeometryCompression::meshopt;
+  for (EncodedImage& image : model.images) image.bytes.clear();
+  return write_gltf(model, true, "land", options, context).bytes.total();
+}
+
+/// What a mesh or a texture takes, and what it is.
+struct MeshRung {
+  Model model;
+  std::uint64_t bytes = 0;
+};
+struct TextureRung {
+  std::shared_ptr<const MipMap> map;
+  std::uint64_t bytes = 0;
+  double kept = 0;  ///< Of the coefficients or texels.
+};
+struct Ladders {
+  std::string name;
+  std::vector<MeshRung> meshes;
+  std::vector<TextureRung> textures;
+};
+
+/// Heights of the land's middle part seen from a low flight: about a tenth of it is in the picture.
+View view_of(const HeightField& field) {
+  Box box;
+  for (const Vec3f p : field.points) box.add(transform_point(field.to_world, Vec3d(p)));
+  const Vec3d size = box.high - box.low;
+  const double side = std::max(size.x, size.z);
+  const Vec3d middle = box.center();
+  const auto at = [&](double x, double z, double above) {
+    return Vec3d{middle.x + x * side, box.low.y + above * side, middle.z + z * side};
+  };
+  const double top = size.y / side;
+  return view_from(at(0.05, 0.36, top + 0.20), at(0, 0.05, top / 3), 30);
+}
+
+Land land_of(std::string name, const Model& original) {
+  HeightFieldSearch search = find_height_field(original);
+  if (!search.field) throw Error(ErrorKind::unsupported, name + " is no height field: " + search.why_not);
+  HeightField field = std::move(*search.field);
+  // Pictures are of base colour alone: normals would take bytes for nothing.
+  std::erase_if(field.layers, [](const AttributeLayer& layer) { return layer.semantic != Semantic::uv; });
+  const QuadtreeLevels levels(field, HeightError::largest);
+  Model model = with_level(original, field, levels.level(levels.split_count()));
+  const View view = view_of(field);
+  return {std::move(name), std::move(model), std::move(field), view};
+}
+
+/// The scene's image that land shows.
+std::size_t image_of(const RenderScene& scene) {
+  return static_cast<std::size_t>(scene.materials[0].base_color_texture->image);
+}
+
+class Experiment {
+ public:
+  Experiment(const Land& land, Context& context)
+      : land_(land),
+        context_(context),
+        scene_(make_render_scene(land.model, rest_pose(land.model), context)) {
+    options_.pass = Pass::base_color;
+    options_.width = options_.height = kSize;
+    picture_ = render(scene_, land.view, options_, context_).color;
+    weights_ = height_weights(land.field, scene_, std::span(&land.view, 1), kSize, kSize, context);
+    resolution_ = texel_resolution(scene_, image_of(scene_), std::span(&land.view, 1), kSize, kSize, context);
+  }
+
+  double seen_share() const {
+    const auto seen = std::ranges::count_if(weights_, [](float w) { return w > 0; });
+    return static_cast<double>(seen) / static_cast<double>(weights_.size());
+  }
+  const Image8& picture() const { return picture_; }
+
+  /// Quadtree and wavelets, both for the view.
+  Ladders paper_ladders() {
+    Ladders ladders{"quadtree, wavelets", {}, {}};
+    const QuadtreeLevels levels(land_.field, HeightError::squares, weights_);
+    const auto triangles = static_cast<double>(levels.triangles_after(levels.split_count()));
+    for (int i = 0; i < kMeshes; ++i)
+      add_mesh(ladders, with_level(land_.model, land_.field,
+                                   levels.level(levels.splits_to(
+                                       static_cast<std::uint64_t>(share(i, kMeshes) * triangles)))));
+    const Image8 image = decode_image(land_.model.images[0].bytes);
+    const WaveletImage wavelets = wavelet_image(image, kStep);
+    const auto total = static_cast<double>(wavelets.planes[0].size());
+    const auto kept = [&](double octaves) {
+      return static_cast<double>(pruned(wavelets, resolution_, octaves).kept) / total;
+    };
+    const auto octaves_for = [&](double part) {
+      double low = -8, high = 16;
+      for (int i = 0; i < 24; ++i) (kept((low + high) / 2) > part ? low : high) = (low + high) / 2;
+      return high;
+    };
+    // A view may show less than a tenth of the image at all: then from where the first of it goes.
+    const double first = octaves_for(std::min(kMost, 0.999 * kept(-8))), last = octaves_for(kLeast);
+    note_ = fmt::format("d from 2^{:.2f} to 2^{:.2f} times that of the view, k = {:.1f}", first, last,
+                        (kTextures - 1) / (last - first));
+    for (int i = 0; i < kTextures; ++i) {
+      const PrunedWavelets rung = pruned(wavelets, resolution_, first + (last - first) * i / (kTextures - 1));
+      const std::vector<std::uint8_t> code = encode(rung.image);
+      const Image8 shown = reconstructed(decode_wavelets(code));
+      add_texture(ladders, shown, code.size(), static_cast<double>(rung.kept) / total);
+    }
+    return ladders;
+  }
+
+  /// Collapses and smaller images, as `fovea fit` has them, for no view.
+  Ladders own_ladders() {
+    Ladders ladders{"collapses, smaller images", {}, {}};
+    SimplifyOptions simplify_options;
+    simplify_options.ratio = kLeast;
+    simplify_options.metric = Metric::quadric;
+    const CollapseRecord record = simplify(land_.model, simplify_options, {}, context_).record;
+    const auto triangles = static_cast<double>(record.triangles_before);
+    for (int i = 0; i < kMeshes; ++i)
+      add_mesh(ladders, replay(land_.model, record,
+                               record.steps_to(static_cast<std::uint64_t>(share(i, kMeshes) * triangles))));
+    ShrinkOptions shrink;
+    shrink.output.format = TextureOutput::webp;
+    const auto whole = static_cast<double>(land_.model.images[0].bytes.size());
+    shrink.max_bytes = static_cast<std::int64_t>(whole);
+    shrink.shown_pixels = kSize;
+    TextureLadder images(land_.model, shrink, context_);
+    for (int i = 0; i < kTextures; ++i) {
+      // From half of the file's bytes on; a smaller one may be all that there is.
+      const double bytes = 0.5 * whole * share(i, kTextures) / kMost;
+      const Shrunk shrunk = images.within(static_cast<std::uint64_t>(bytes), false);
+      if (!ladders.textures.empty() && shrunk.bytes >= ladders.textures.back().bytes) continue;
+      const Image8 image = decode_image(shrunk.model.images[0].bytes);
+      add_texture(ladders, image, shrunk.bytes,
+                  static_cast<double>(image.width) * image.height /
+                      (static_cast<double>(scene_.images[image_of(scene_)].map->width()) *
+                       scene_.images[image_of(scene_)].map->height()));
+    }
+    return ladders;
+  }
+  /// Meshes with the whole texture and textures on the whole mesh, by kind, at equal triangles and bytes.
+  void print_single(const Ladders& paper, const Ladders& own) {
+    const TextureRung whole_texture{scene_.images[image_of(scene_)].map, 0, 1};
+    const MeshRung whole_mesh{land_.model, 0};
+    const auto db = [&](const MeshRung& mesh, const TextureRung& texture) {
+      return psnr(mean_squared_error(picture_, picture(mesh, texture)));
+    };
+    const QuadtreeLevels squares(land_.field, HeightError::squares, weights_),
+        largest(land_.field, HeightError::largest, weights_), surface(land_.field, HeightError::squares);
+    fmt::print(
+        "| triangles | quadtree by squares, for the view | by the largest, for the view | by squares, for no "
+        "view | "
+        "collapses |\n|--:|--:|--:|--:|--:|\n");
+    for (std::size_t i = 0; i < paper.meshes.size(); i += 11) {
+      const std::size_t triangles = triangle_count(paper.meshes[i].model);
+      fmt::print("| {}", triangles);
+      for (const QuadtreeLevels* levels : {&squares, &largest, &surface})
+        fmt::print(" | {:.2f}",
+                   db({with_level(land_.model, land_.field, levels->level(levels->splits_to(triangles))), 0},
+                      whole_texture));
+      const auto near = std::ranges::find_if(
+          own.meshes, [&](const MeshRung& m) { return triangle_count(m.model) <= triangles + 2; });
+      fmt::print(" | {:.2f} |\n", near == own.meshes.end() ? 0.0 : db(*near, whole_texture));
+    }
+    fmt::print("\n| bytes | wavelets, for the view | smaller images, at most so many |\n|--:|--:|--:|\n");
+    for (std::size_t i = 0; i < paper.textures.size(); i += 5) {
+      const TextureRung& texture = paper.textures[i];
+      const auto near =
+          std::ranges::find_if(own.textures, [&](const TextureRung& t) { return t.bytes <= texture.bytes; });
+      fmt::print("| {} | {:.2f} | {} |\n", texture.bytes, db(whole_mesh, texture),
+                 near == own.textures.end() ? "–" : fmt::format("{:.2f}", db(whole_mesh, *near)));
+    }
+    fmt::print("\n");
+  }
+  const std::string& note() const { return note_; }
+
+  /// [#meshes][#textures] Mean squared differences on the screen.
+  std::vector<std::vector<double>> draw(const Ladders& ladders) {
+    std::vector<std::vector<double>> losses(ladders.meshes.size());
+    parallel_for_or_throw(context_, losses.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t m = begin; m < end; ++m) {
+        const Model& model = ladders.meshes[m].model;
+        RenderScene scene = make_render_scene(model, rest_pose(model), context_, &scene_);
+        for (const TextureRung& texture : ladders.textures) {
+          scene.images[image_of(scene)].map = texture.map;
+          losses[m].push_back(
+              mean_squared_error(picture_, render(scene, land_.view, options_, context_).color));
+        }
+      }
+    });
+    return losses;
+  }
+
+  Image8 picture(const MeshRung& mesh, const TextureRung& texture) {
+    RenderScene scene = make_render_scene(mesh.model, rest_pose(mesh.model), context_, &scene_);
+    scene.images[image_of(scene)].map = texture.map;
+    return render(scene, land_.view, options_, context_).color;
+  }
+
+ private:
+  void add_mesh(Ladders& ladders, Model model) {
+    const std::uint64_t bytes = geometry_bytes(model, context_);
+    if (ladders.meshes.empty() || bytes < ladders.meshes.back().bytes)
+      ladders.meshes.push_back({std::move(model), bytes});
+  }
+  static void add_texture(Ladders& ladders, const Image8& image, std::uint64_t bytes, double kept) {
+    if (ladders.textures.empty() || bytes < ladders.textures.back().bytes)
+      ladders.textures.push_back({std::make_shared<const MipMap>(image, ColorEncoding::srgb), bytes, kept});
+  }
+
+  const Land& land_;
+  Context& context_;
+  RenderScene scene_;
+  RenderOptions options_;
+  Image8 picture_;
+  std::vector<float> weights_;
+  ResolutionMap resolution_;
+  std::string note_;
+};
+
+using Path = std::vector<JointPoint>;
+
+/// A way through the pairs, and those that were drawn for it.
+struct Way {
+  std::string name;
+  Path path, drawn;
+};
+
+/// As the paper writes it: of the coarser mesh and the coarser texture the one that loses less, whatever
+/// either saves.
+Path prune_by_step(const JointLadders& ladders) {
+  const auto point = [&](const Rungs& rungs) {
+    return JointPoint{rungs, ladders.bytes(rungs), ladders.loss(rungs)};
+  };
+  Path path{point({0, 0})};
+  while (true) {
+    std::optional<JointPoint> best;
+    for (std::size_t l = 0; l < 2; ++l) {
+      Rungs rungs = path.back().rungs;
+      if (++rungs[l] == ladders.rungs[l]) continue;
+      const JointPoint next = point(rungs);
+      if (!best || next.loss < best->loss) best = next;
+    }
+    if (!best) return path;
+    path.push_back(*best);
+  }
+}
+
+/// Loss of the hull at a number of bytes, linear between its points.
+double hull_loss(const Path& hull, std::uint64_t bytes) {
+  if (bytes >= hull.front().bytes) return hull.front().loss;
+  for (std::size_t i = 1; i < hull.size(); ++i) {
+    if (bytes < hull[i].bytes) continue;
+    const double t =
+        static_cast<double>(bytes - hull[i].bytes) / static_cast<double>(hull[i - 1].bytes - hull[i].bytes);
+    return hull[i].loss + t * (hull[i - 1].loss - hull[i].loss);
+  }
+  return hull.back().loss;
+}
+
+/// The least loss within a number of bytes; none if nothing is so small.
+std::optional<double> least_loss(const Path& points, double bytes) {
+  std::optional<double> least;
+  for (const JointPoint& p : points) {
+    if (static_cast<double>(p.bytes) <= bytes && (!least || p.loss < *least)) least = p.loss;
+  }
+  return least;
+}
+
+/// How far a way stays behind, in dB.
+struct Gap {
+  double most = 0, mean = 0;
+};
+Gap gap_to_hull(const Path& path, const Path& hull) {
+  Gap gap;
+  for (const JointPoint& p : path) {
+    const double db = psnr(hull_loss(hull, p.bytes)) - psnr(p.loss);
+    gap.most = std::max(gap.most, db);
+    gap.mean += db / static_cast<double>(path.size());
+  }
+  return gap;
+}
+/// Over budgets in geometric progression: the best pair that was drawn against the best of all.
+Gap gap_within_budgets(const Path& drawn, const Path& all) {
+  constexpr int kBudgets = 100;
+  const auto [low, high] = std::ranges::minmax(all, {}, [](const JointPoint& p) { return p.bytes; });
+  Gap gap;
+  for (int i = 0; i < kBudgets; ++i) {
+    const double bytes =
+        static_cast<double>(low.bytes) *
+        std::pow(static_cast<double>(high.bytes) / static_cast<double>(low.bytes), i / (kBudgets - 1.0));
+    const double db = psnr(*least_loss(all, bytes * 1.000001)) - psnr(*least_loss(drawn, bytes * 1.000001));
+    gap.most = std::max(gap.most, db);
+    gap.mean += db / kBudgets;
+  }
+  return gap;
+}
+
+class Analysis {
+ public:
+  Analysis(const Ladders& ladders, std::vector<std::vector<double>> losses)
+      : ladders_(ladders), losses_(std::move(losses)) {
+    joint_.rungs = {ladders.meshes.size(), ladders.textures.size()};
+    joint_.bytes = [this](const Rungs& r) {
+      return ladders_.meshes[r[0]].bytes + ladders_.textures[r[1]].bytes;
+    };
+    joint_.loss = [this](const Rungs& r) {
+      asked_.insert(r);
+      return losses_[r[0]][r[1]];
+    };
+    all_ = exhaust(joint_);
+    hull_ = lower_hull(all_);
+    add("pruning, by step", [&] { return prune_by_step(joint_); });
+    add("pruning, by byte", [&] { return prune(joint_, 0); });
+    add(fmt::format("pruning, by byte, up to {} rungs", kAhead), [&] { return prune(joint_, 0, kAhead); });
+    add("growing, by byte", [&] { return grow(joint_, ~std::uint64_t{0}); });
+  }
+
+  void print() const {
+    fmt::print(
+        "| way | pairs drawn | of all | points | behind the hull: most, dB | mean | within bytes: most, dB | "
+        "mean |\n"
+        "|---|--:|--:|--:|--:|--:|--:|--:|\n"
+        "| all pairs | {} | 100 % | {} | 0 | 0 | 0 | 0 |\n",
+        all_.size(), hull_.size());
+    for (const Way& way : ways_) {
+      const Gap hull = gap_to_hull(way.path, hull_), within = gap_within_budgets(way.drawn, all_);
+      fmt::print("| {} | {} | {:.1f} % | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", way.name,
+                 way.drawn.size(),
+                 100.0 * static_cast<double>(way.drawn.size()) / static_cast<double>(all_.size()),
+                 way.path.size(), hull.most, hull.mean, within.most, within.mean);
+    }
+    fmt::print(
+        "\n| bytes | best pair: mesh, texture | dB | pruning by up to 3 rungs: mesh, texture | dB "
+        "|\n|--:|--:|--:|--:|--:|\n");
+    const auto bytes = [](const Path& points, double most) {
+      const JointPoint* best = nullptr;
+      for (const JointPoint& p : points) {
+        if (static_cast<double>(p.bytes) <= most && (best == nullptr || p.loss < best->loss)) best = &p;
+      }
+      return best;
+    };
+    const double high = static_cast<double>(all_.front().bytes);
+    for (const double part : {0.5, 0.25, 0.125, 0.0625, 0.03125}) {
+      const JointPoint *best = bytes(all_, part * high), *found = bytes(ways_[2].drawn, part * high);
+      if (best == nullptr || found == nullptr) continue;
+      fmt::print("| {:.0f} | {}, {} | {:.2f} | {}, {} | {:.2f} |\n", part * high,
+                 ladders_.meshes[best->rungs[0]].bytes, ladders_.textures[best->rungs[1]].bytes,
+                 psnr(best->loss), ladders_.meshes[found->rungs[0]].bytes,
+                 ladders_.textures[found->rungs[1]].bytes, psnr(found->loss));
+    }
+    fmt::print("\n");
+  }
+
+  void write_points(std::ofstream& out, const std::string& land) const {
+    for (const JointPoint& p : all_) {
+      std::string passed;
+      const auto passes = [&](const Path& path) {
+        return std::ranges::any_of(path, [&](const JointPoint& q) { return q.rungs == p.rungs; });
+      };
+      for (const Way& way : ways_) passed += passes(way.path) ? ",1" : ",0";
+      out << fmt::format("{},{},{},{},{},{},{},{:.6g},{:.4f},{}{}\n", land,
+                         ladders_.name.substr(0, ladders_.name.find(',')), p.rungs[0], p.rungs[1],
+                         ladders_.meshes[p.rungs[0]].bytes, ladders_.textures[p.rungs[1]].bytes, p.bytes,
+                         p.loss, psnr(p.loss), passes(hull_) ? 1 : 0, passed);
+    }
+  }
+
+ private:
+  void add(std::string name, const std::function<Path()>& walk) {
+    asked_.clear();
+    Path path = walk();
+    Path drawn;
+    for (const Rungs& r : asked_) drawn.push_back({r, joint_.bytes(r), losses_[r[0]][r[1]]});
+    ways_.push_back({std::move(name), std::move(path), std::move(drawn)});
+  }
+
+  const Ladders& ladders_;
+  std::vector<std::vector<double>> losses_;
+  JointLadders joint_;
+  std::set<Rungs> asked_;
+  Path all_, hull_;
+  std::vector<Way> ways_;
+};
+
+std::vector<Land> lands(Context& context) {
+  std::vector<Land> result;
+  result.push_back(land_of("fovea sample terrain", make_sample("terrain", 1, context)));
+  if (const auto folder = data_folder()) {
+    const auto bytes = [&](const char* name) {
+      const std::vector<std::byte> file = read_file(*folder / "terrain" / name, ReadOptions().max_file_bytes);
+      std::vector<std::uint8_t> out(file.size());
+      std::ranges::transform(file, out.begin(), [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
+      return out;
+    };
+    if (std::filesystem::exists(*folder / "terrain/puget_sound_height_512.png")) {
+      TerrainMap map;
+      map.heights = decode_heights(bytes("puget_sound_height_512.png"));
+      map.texture.bytes = bytes("puget_sound_texture_1024.png");
+      map.texture.mime_type = "image/png";
+      result.push_back(land_of("Puget Sound", make_terrain(map, 1, context)));
+    }
+  }
+  return result;
+}
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void measure_land(const Land& land, std::ofstream& points, const std::string& views, Context& context) {
+  Experiment experiment(land, context);
+  fmt::print("### {}\n\n{} x {} points, {:.0f} % of them in the picture.\n\n", land.name, land.field.columns,
+             land.field.rows, 100 * experiment.seen_share());
+  if (!views.empty()) write_image(experiment.picture(), views + "/" + land.name + ".png", true);
+  std::array<Ladders, 2> both;
+  std::array<double, 2> making{};
+  for (const std::size_t i : {0u, 1u})
+    making[i] = seconds_of([&] { both[i] = i == 1 ? experiment.own_ladders() : experiment.paper_ladders(); });
+  experiment.print_single(both[0], both[1]);
+  for (const bool is_own : {false, true}) {
+    const Ladders& ladders = both[is_own ? 1 : 0];
+
+    std::vector<std::vector<double>> losses;
+    const double drawing = seconds_of([&] { losses = experiment.draw(ladders); });
+    const MeshRung &fine = ladders.meshes.front(), &coarse = ladders.meshes.back();
+    const TextureRung &sharp = ladders.textures.front(), &blurred = ladders.textures.back();
+    fmt::print(
+        "**{}**: {} meshes of {} to {} triangles ({} to {} bytes), {} textures of {:.3g} to {:.2g} % ({} to "
+        "{} "
+        "bytes){}; ladders {:.0f} s, {} pictures {:.0f} s. The largest pair {:.2f} dB, the smallest {:.2f} "
+        "dB.\n\n",
+        ladders.name, ladders.meshes.size(), triangle_count(fine.model), triangle_count(coarse.model),
+        fine.bytes, coarse.bytes, ladders.textures.size(), 100 * sharp.kept, 100 * blurred.kept, sharp.bytes,
+        blurred.bytes, is_own ? "" : ", " + experiment.note(), making[is_own ? 1 : 0],
+        ladders.meshes.size() * ladders.textures.size(), drawing, psnr(losses.front().front()),
+        psnr(losses.back().back()));
+    const Analysis analysis(ladders, losses);
+    analysis.print();
+    if (points.is_open()) analysis.write_points(points, land.name);
+    if (!views.empty()) {
+      const std::string stem = views + "/" + land.name + (is_own ? " own" : " paper");
+      write_image(experiment.picture(fine, sharp), stem + " large.png", true);
+      write_image(experiment.picture(coarse, blurred), stem + " small.png", true);
+    }
+    std::fflush(stdout);
+  }
+}
+
+std::string take_option(std::vector<std::string>& words, const std::string& name) {
+  const auto at = std::ranges::find(words, name);
+  if (at == words.end()) return {};
+  if (at + 1 == words.end()) throw Error(ErrorKind::usage, name + " needs a value");
+  std::string value = *(at + 1);
+  words.erase(at, at + 2);
+  return value;
+}
+
+int run(int count, char** arguments) {
+  try {
+    std::vector<std::string> words(arguments + 1, arguments + count);
+    const std::string file = take_option(words, "--points"), views = take_option(words, "--views");
+    if (!words.empty()) throw Error(ErrorKind::usage, words[0] + " is no option");
+    std::ofstream points;
+    if (!file.empty()) {
+      points.open(file);
+      points << "land,ladders,mesh,texture,mesh_bytes,texture_bytes,bytes,mse,psnr,hull,prune_step,prune_"
+                "byte,grow\n";
+    }
+    Context context;
+    for (const Land& land : lands(context)) measure_land(land, points, views, context);
+    return 0;
+  } catch (const Error& error) {
+    fmt::print(stderr, "terrain_bench: {}\n", error.what());
+    return exit_code(error.kind());
+  }
+}
+
+}  // namespace
+}  // namespace fovea::bench
+
+int main(int count, char** arguments) { return fovea::bench::run(count, arguments); }
