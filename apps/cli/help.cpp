@@ -134,6 +134,7 @@ std::string main_help() {
   text += "\nOptions\n";
   text += entry("-h, --help", "Show this, or after a verb the verb's options and examples.");
   text += entry("--version", "Show the version.");
+  text += entry("--completions=SHELL", "What bash, zsh or fish needs to complete verbs and options.");
   text += "\nExamples\n";
   for (const auto& verb : make_verbs()) text += "  " + verb->text().examples.front().command + "\n";
   text +=

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "completions.h"
 #include "fovea/base/error.h"
 #include "help.h"
 #include "report.h"
@@ -50,6 +51,8 @@ bool answer(const Words& words) {
     fmt::print("{}", main_help());
   } else if (first == "--help=markdown") {
     fmt::print("{}", options_markdown());
+  } else if (first.rfind("--completions=", 0) == 0) {
+    fmt::print("{}", completions(first.substr(first.find('=') + 1)));
   } else if (first == "help") {
     fmt::print("{}", verb_help(*find_verb(words[1])));
   } else {

@@ -1,11 +1,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <string>
+#include <vector>
+
 #include "run_command.h"
 
 namespace fovea::test {
 namespace {
 
+using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -173,6 +179,46 @@ TEST(Usage, MissingAndSurplusArguments) {
     EXPECT_THAT(fovea(words).err, HasSubstr("MODEL is missing"));
   EXPECT_THAT(fovea({"info", "a.glb", "b.glb"}).err, HasSubstr("'b.glb' is one argument too many"));
   EXPECT_EQ(fovea({"info", "a.glb", "b.glb"}).code, 2);
+}
+
+/// What bash offers after these words, of which the last is being typed.
+std::vector<std::string> completed(const std::vector<std::string>& words) {
+  std::string script = "eval \"$(" + std::string(FOVEA_PROGRAM) + " --completions=bash)\"; COMP_WORDS=(fovea";
+  for (const std::string& word : words) script += " '" + word + "'";
+  script += "); COMP_CWORD=" + std::to_string(words.size()) + "; _fovea; printf '%s\\n' \"${COMPREPLY[@]}\"";
+  const Folder folder;
+  const std::string command = "bash " + folder.write("complete.sh", script);
+  std::vector<std::string> offered(1);
+  FILE* const out = popen(command.c_str(), "r");
+  for (int c; (c = std::fgetc(out)) != EOF;) {
+    if (c == '\n') {
+      offered.emplace_back();
+    } else {
+      offered.back() += static_cast<char>(c);
+    }
+  }
+  pclose(out);
+  offered.pop_back();
+  return offered;
+}
+
+TEST(Completions, BashOffersVerbsOptionsAndChoices) {
+  EXPECT_THAT(completed({"si"}), ElementsAre("simplify"));
+  EXPECT_THAT(completed({""}), Contains("fit"));
+  EXPECT_THAT(completed({"simplify", "m.glb", "--rat"}), ElementsAre("--ratio"));
+  EXPECT_THAT(completed({"simplify", "--metric", ""}),
+              ElementsAre("auto", "quadric", "visibility", "entropy", "polygon-entropy", "image"));
+  EXPECT_THAT(completed({"fit", "--distortion", "f"}), ElementsAre("flip"));
+}
+
+TEST(Completions, AreThereForOtherShells) {
+  const std::string zsh = fovea({"--completions=zsh"}).out, fish = fovea({"--completions=fish"}).out;
+  EXPECT_THAT(zsh, HasSubstr("#compdef fovea"));
+  EXPECT_THAT(zsh, HasSubstr("'--metric["));
+  EXPECT_THAT(fish, HasSubstr("complete -c fovea -n '__fish_seen_subcommand_from simplify' -l ratio"));
+  const Outcome other = fovea({"--completions=tcsh"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("write bash, zsh or fish"));
 }
 
 }  // namespace

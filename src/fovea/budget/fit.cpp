@@ -273,7 +273,8 @@ class BudgetFit::Finder {
     try_share(base, 1);
     for (const double step : {0.8, 1.25}) {
       bool gains = false;
-      for (double share = step; share > 0.2 && share < 5 && try_share(base, share); share *= step) gains = true;
+      for (double share = step; share > 0.2 && share < 5 && try_share(base, share); share *= step)
+        gains = true;
       if (gains) return;  // there is nothing on the other side then
     }
   }
@@ -296,14 +297,16 @@ class BudgetFit::Finder {
     const std::vector<std::size_t> wanted = textures.within(static_cast<std::uint64_t>(room), false);
     choice.ways = wanted;
     consider(choice);
-    if (options_.ladders == FitLadderSet::separate && static_cast<double>(ladders_.image_bytes(base)) <= room) {
+    if (options_.ladders == FitLadderSet::separate &&
+        static_cast<double>(ladders_.image_bytes(base)) <= room) {
       choice.ways = textures.filled(base.ways, static_cast<std::uint64_t>(room));
       if (choice.ways != wanted) consider(choice);
     }
     return best_->loss.value < before;
   }
 
-  /// Bytes moved from some images to others, as pictures want it: estimates do not know what light makes of them.
+  /// Bytes moved from some images to others, as pictures want it: estimates do not know what light makes of
+  /// them.
   void try_weights() {
     TextureLadders* const textures = ladders_.textures();
     if (textures == nullptr) return;

@@ -82,7 +82,9 @@ std::vector<std::size_t> TextureLadders::within(std::uint64_t bytes, bool refine
   return ways;
 }
 
-void TextureLadders::set_weight(std::size_t image, double weight) { state_->budget.set_weight(image, weight); }
+void TextureLadders::set_weight(std::size_t image, double weight) {
+  state_->budget.set_weight(image, weight);
+}
 
 std::vector<std::size_t> TextureLadders::filled(std::vector<std::size_t> ways, std::uint64_t bytes) const {
   std::vector<std::vector<LadderStep>> steps;

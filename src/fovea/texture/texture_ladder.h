@@ -47,7 +47,8 @@ class TextureLadders {
   /// [#images] The ways that lose least of what takes no more than so many bytes together, or the fewest
   /// bytes there are. With `refine` more qualities are tried near them: some seconds for large images.
   std::vector<std::size_t> within(std::uint64_t bytes, bool refine);
-  /// From now on what is lost of an image counts so many times: estimates do not know what lit pictures make of it.
+  /// From now on what is lost of an image counts so many times: estimates do not know what lit pictures make
+  /// of it.
   void set_weight(std::size_t image, double weight);
   /// So many bytes together spent from given ways [#images] on: again and again on the image that gains most.
   std::vector<std::size_t> filled(std::vector<std::size_t> ways, std::uint64_t bytes) const;

@@ -1,0 +1,45 @@
+// Pruning against all pairs, as Markdown: hulls.mjs FOVEA FOLDER MODEL... fits each model with one ladder of triangles
+// and one of images, once by pruning and once by drawing all pairs, from the usual 24 views, and says how far the way
+// is below the lower hull of all pairs at equal bytes. A minute for each.
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, readFileSync } from 'node:fs';
+import { basename, join } from 'node:path';
+
+const [fovea, folder, ...models] = process.argv.slice(2);
+if (!fovea || !folder || models.length === 0) {
+  console.error('usage: hulls.mjs FOVEA FOLDER MODEL...');
+  process.exit(2);
+}
+mkdirSync(folder, { recursive: true });
+const quiet = { maxBuffer: 1 << 26, stdio: ['ignore', 'pipe', 'ignore'] };
+const out = join(folder, 'fitted.glb'), curve = join(folder, 'curve.json');
+
+function way(model, search) {
+  // A budget of a few bytes walks to the end.
+  const report = JSON.parse(execFileSync(fovea, ['fit', model, '-o', out, '--force', '--bytes', '1', '--allow-miss', '--views',
+    'rhombicuboctahedron', '--search', search, '--curve', curve, '--json'], quiet));
+  return { ...JSON.parse(readFileSync(curve)), drawn: report.result.pictures_of, seconds: report.seconds };
+}
+
+/** The loss of a hull, which falls in bytes, at so many bytes: along the straight line between its points. */
+function lossAt(hull, bytes) {
+  for (let i = 1; i < hull.length; ++i) {
+    const [more, fewer] = [hull[i - 1], hull[i]];
+    if (bytes < fewer.bytes) continue;
+    const part = Math.min(1, (bytes - fewer.bytes) / (more.bytes - fewer.bytes));
+    return fewer.loss + part * (more.loss - fewer.loss);
+  }
+  return hull.at(-1).loss;
+}
+
+console.log('| model | pairs | drawn by pruning | of all | points | behind the hull, dB: most | mean | s: pruning | all pairs |');
+console.log('|---|--:|--:|--:|--:|--:|--:|--:|--:|');
+for (const model of models) {
+  const pruned = way(model, 'prune'), all = way(model, 'exhaustive');
+  const gaps = pruned.path.filter((p) => p.loss > 0).map((p) => {
+    const best = lossAt(all.path, p.bytes);
+    return best > 0 ? Math.max(0, 10 * Math.log10(p.loss / best)) : 0;
+  });
+  console.log(`| ${basename(model).replace(/\.[^.]*$/, '')} | ${all.all.length} | ${pruned.drawn} | ${(100 * pruned.drawn / all.all.length).toFixed(0)} % | ` +
+    `${pruned.path.length} | ${Math.max(...gaps).toFixed(2)} | ${(gaps.reduce((a, b) => a + b, 0) / gaps.length).toFixed(2)} | ${pruned.seconds.toFixed(0)} | ${all.seconds.toFixed(0)} |`);
+}
