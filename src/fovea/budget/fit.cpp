@@ -169,8 +169,12 @@ class BudgetFit::Finder {
     try_image_levels();
     result.reached = best_.has_value();
     if (!result.reached) return take_smallest();
-    try_shares();
-    try_weights();
+    if (ladders_.textures() != nullptr) {
+      // Qualities near what is chosen, so that shares find what fits them.
+      ladders_.textures()->within(bytes_for_images(best_->model), true);
+      try_shares();
+      try_weights();
+    }
     add_triangles();
     choose_triangles();
     refine_images();
@@ -268,7 +272,6 @@ class BudgetFit::Finder {
 
   /// More and fewer triangles than the best has, with all other bytes spent on images.
   void try_shares() {
-    if (ladders_.textures() == nullptr) return;
     const FitChoice base = best_->choice;
     try_share(base, 1);
     for (const double step : {0.8, 1.25}) {
@@ -309,7 +312,6 @@ class BudgetFit::Finder {
   /// them.
   void try_weights() {
     TextureLadders* const textures = ladders_.textures();
-    if (textures == nullptr) return;
     constexpr std::size_t kMostImages = 8;
     std::vector<std::size_t> images;
     for (std::size_t i = 0; i < textures->rungs().size(); ++i)
@@ -390,13 +392,18 @@ class BudgetFit::Finder {
     }
   }
 
+  /// What a model's triangles leave.
+  std::uint64_t bytes_for_images(const Model& model) {
+    std::uint64_t images = 0;
+    for (const EncodedImage& image : model.images) images += image.bytes.size();
+    return bytes_ - (ladders_.file_bytes(model) - images);
+  }
+
   /// The same triangles with qualities of images tried more finely.
   void refine_images() {
     TextureLadders* const textures = ladders_.textures();
     if (textures == nullptr) return;
-    std::uint64_t images = 0;
-    for (const EncodedImage& image : best_->model.images) images += image.bytes.size();
-    const std::uint64_t room = bytes_ - (ladders_.file_bytes(best_->model) - images);
+    const std::uint64_t room = bytes_for_images(best_->model);
     const std::vector<std::size_t> before = best_->choice.ways;
     const std::array<std::vector<std::size_t>, 2> tried{textures->within(room, true),
                                                         textures->filled(before, room)};

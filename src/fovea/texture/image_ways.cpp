@@ -148,9 +148,9 @@ class Ways {
 
   /// From that of `file` on.
   void add_qualities(const Image8& picture, FileChoice file, double least_loss) {
-    for (; file.quality <= kMostQuality; file.quality += quality_step(texels(picture))) {
-      if (!add(picture, file) || sum_of_losses(ways_.back()) <= kNearlyAll * least_loss) return;
-    }
+    while (add(picture, file) && sum_of_losses(ways_.back()) > kNearlyAll * least_loss &&
+           file.quality < kMostQuality)
+      file.quality = std::min(file.quality + quality_step(texels(picture)), kMostQuality);
   }
 
   /// False if it takes too many bytes.
