@@ -160,7 +160,10 @@ bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
   };
   const double cosine = dot(before, after);
   const bool keeps_side = cosine > 0 && cosine * cosine > kMaxTurnCosine * kMaxTurnCosine * before2 * after2;
-  return (keeps_side && !is_sliver(to, after2)) || is_sliver(from, before2);
+  if (keeps_side && !is_sliver(to, after2)) return true;
+  // A sliver may stay one, but not with two corners at one place: whoever reads that drops it.
+  const Vec3f place(to);
+  return is_sliver(from, before2) && place != Vec3f(p1) && place != Vec3f(p2);
 }
 
 bool Legality::shape(Vec3d p) const {
