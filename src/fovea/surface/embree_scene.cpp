@@ -1,14 +1,26 @@
 #include "fovea/surface/embree_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 #include "fovea/base/error.h"
 
 namespace fovea {
 
 namespace {
+
+/// Throws what Embree says went wrong with a device, or with making one: for lack of memory it builds no
+/// tree, or an empty one.
+void check_device(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error != RTC_ERROR_NONE || device == nullptr)
+    throw Error(ErrorKind::internal, fmt::format("Embree fails with error {}", static_cast<int>(error)));
+}
 
 /// The power of two that brings the largest coordinate near 1, if it is unusual.
 double scale_for(const Surface& surface) {
@@ -31,11 +43,11 @@ double scale_for(const Surface& surface) {
 RTCGeometry EmbreeScene::make_geometry(const Surface& surface) {
   scale_ = scale_for(surface);
   // One thread: many small trees are built, and results must not depend on the build's order.
-  device_ = rtcNewDevice("threads=1");
-  if (device_ == nullptr) throw Error(ErrorKind::internal, "Embree gives no device");
-  scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-  const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  device_.reset(rtcNewDevice("threads=1"));
+  check_device(device_.get());
+  scene_.reset(rtcNewScene(device_.get()));
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                             sizeof(Vec3f), surface.positions.size());
   void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -55,14 +67,10 @@ Vec3f EmbreeScene::to_tree(Vec3d p) const {
 
 void EmbreeScene::commit(RTCGeometry geometry) {
   rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_, geometry);
+  rtcAttachGeometry(scene_.get(), geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_);
-}
-
-EmbreeScene::~EmbreeScene() {
-  if (scene_ != nullptr) rtcReleaseScene(scene_);
-  if (device_ != nullptr) rtcReleaseDevice(device_);
+  rtcCommitScene(scene_.get());
+  check_device(device_.get());
 }
 
 }  // namespace fovea
