@@ -29,7 +29,8 @@ struct SimplifyRun {
 /// - influences are whole and of the joints there were, normals are unit, tangents have a side, colours are
 ///   within 0 and 1;
 /// - what is locked is where it was, with half-edge placement all is;
-/// - where topology is to be kept nothing is torn: no more open edges than before, neither of the surface nor of
+/// - where topology is to be kept nothing is torn: no more open edges than before, neither of the surface nor
+/// of
 ///   any layer, and of a manifold as many pieces, handles and holes.
 std::string fault_of(const SimplifyRun& run);
 
