@@ -280,7 +280,7 @@ async function matrix() {
 
 // Of each kind one: textured, skinned, morphed, many meshes, a scan, another format.
 const TRIED = ['textured/Duck.glb', 'textured/GlamVelvetSofa.glb', 'animated/CesiumMan.glb', 'animated/MorphStressTest.glb', 'animated/KayKitKnight.glb',
-  'textured/spot/spot.obj', 'scans/hand.ply', 'conformance/NegativeScaleTest.glb'].map((name) => path.join(data, name)).filter((file) => fs.existsSync(file));
+  'textured/spot/spot.obj', 'scans/hand.ply', 'conformance/NegativeScaleTest.glb'].map((name) => path.join(data, name)).filter((file) => fs.existsSync(file) && (!match || file.includes(match)));
 
 function hashOf(folder) {
   const hash = createHash('sha256');
