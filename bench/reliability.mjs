@@ -330,7 +330,7 @@ async function memory() {
       if (level > LEVELS[0] && ![0, LIMIT, MISSED].includes(codes.at(-1))) blame(place, `ends with ${codes.at(-1)}: ${done.err.trim().slice(-200)}`);
       if (![0, MISSED].includes(done.code) && left) blame(place, `${left} files are left`);
       fs.rmSync(folder, { recursive: true, force: true });
-      if (done.code === 0) break;
+      if ([0, MISSED].includes(done.code)) break;
     }
     rows[commands.indexOf(command)] = `| ${command.name} | ${codes.map((code, i) => `${LEVELS[i]}: ${code}`).join(', ')} |`;
   });
