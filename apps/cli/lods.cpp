@@ -36,6 +36,11 @@ enum class LodsOutput { by_extension, chain, levels };
 /// Of the coarsest of all levels, if nobody says how many triangles it is to have.
 constexpr double kCoarsestRatio = 0.01;
 
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
 class Lods : public Verb {
  public:
   VerbText text() const override {
@@ -238,7 +243,7 @@ class Lods : public Verb {
 
   bool is_one_file() const {
     const std::string extension = lower_extension(output_);
-    return (extension == ".glb" || extension == ".fovea") && !fs::is_directory(output_);
+    return (extension == ".glb" || extension == ".fovea") && !is_folder(output_);
   }
   bool has_all_levels() const {
     if (as_ != LodsOutput::by_extension) return as_ == LodsOutput::levels;
@@ -285,15 +290,16 @@ class Lods : public Verb {
   /// Where levels are to go: a folder that is there or can be made, with nothing in the way.
   void check_folder(const fs::path& path) const {
     const fs::path folder = folder_of_levels();
-    const bool exists = fs::exists(path);
-    if (!fs::is_directory(path) && path.has_filename() && path.has_extension())
+    std::error_code ignored;
+    const bool exists = fs::exists(path, ignored);
+    if (!is_folder(path) && path.has_filename() && path.has_extension())
       throw Error(ErrorKind::usage, "this is neither a folder nor a .glb", output_,
                   "name a folder for a file for each level, or a .glb for all of them");
     if (!exists) {
       check_place(folder, true);
       return;
     }
-    if (!fs::is_directory(path)) throw Error(ErrorKind::output, "this is not a folder", output_);
+    if (!is_folder(path)) throw Error(ErrorKind::output, "this is not a folder", output_);
     for (std::size_t i = 0; i < planned_levels(); ++i)
       check_place(folder / lod_name(name_, stem(), i), write_options_.force);
     check_place(folder / sidecar_name(), write_options_.force);
@@ -400,8 +406,9 @@ class Lods : public Verb {
 
   /// The input itself, if it is a GLB that needs no other file.
   std::optional<LodFile> original(const Input& input) const {
-    if (input.bytes.format != FileFormat::glb || input.bytes.files != fs::file_size(input_))
-      return std::nullopt;
+    std::error_code vanished;
+    const std::uint64_t size = fs::file_size(input_, vanished);
+    if (vanished || input.bytes.format != FileFormat::glb || input.bytes.files != size) return std::nullopt;
     return LodFile{"", read_file(input_, read_options_.max_file_bytes), input.bytes.kinds};
   }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "completions.h"
@@ -69,6 +71,11 @@ Error caught() {
     return error;
   } catch (const std::bad_alloc&) {
     return {ErrorKind::limit, "out of memory", {}, "the model is too large for this machine"};
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A file that was there a moment ago.
+    return {ErrorKind::input, error.code().message(), error.path1().string()};
+  } catch (const std::system_error& error) {
+    return {ErrorKind::limit, error.code().message(), {}, "the machine has no more threads or files to give"};
   } catch (const std::exception& error) {
     return {ErrorKind::internal, error.what(), {}, "this is a fault of Fovea: please report it"};
   }

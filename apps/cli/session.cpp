@@ -135,11 +135,15 @@ void check_input(const std::string& input) {
   if (input == "-") {
     throw Error(ErrorKind::usage, "standard input is not supported", "-", "name a file");
   }
-  std::error_code ignored;
-  if (fs::is_directory(input, ignored)) {
+  std::error_code error;
+  const fs::file_status status = fs::status(input, error);
+  if (fs::is_directory(status))
     throw Error(ErrorKind::input, "is a folder", input, "name a model file in it");
-  }
-  if (!fs::exists(input, ignored)) throw Error(ErrorKind::input, "no such file", input);
+  if (status.type() == fs::file_type::none) throw Error(ErrorKind::input, error.message(), input);
+  if (status.type() == fs::file_type::not_found) throw Error(ErrorKind::input, "no such file", input);
+  // Models are opened more than once, and opening a pipe waits for whoever writes to it.
+  if (!fs::is_regular_file(status))
+    throw Error(ErrorKind::input, "this is not an ordinary file", input, "write it to a file first");
 }
 
 namespace {

@@ -118,7 +118,7 @@ void check_output(const std::string& output, const std::string& example,
                   const std::vector<std::string>& inputs, bool force,
                   const std::function<void(const std::filesystem::path&)>& check);
 
-/// An input path as given; Error(usage) for "-", Error(input) if it is missing or a folder.
+/// An input path as given; Error(usage) for "-", Error(input) if it is missing, a folder, a pipe or a device.
 void check_input(const std::string& input);
 
 /// The exit code of a run with a target: 8, with a word, if it was missed and that is not allowed.

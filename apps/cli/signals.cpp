@@ -27,6 +27,8 @@ CancelOnSignal::CancelOnSignal(Context& context) {
   listener = &context;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  // A file that grows beyond what is allowed is an error of writing, like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 CancelOnSignal::~CancelOnSignal() {

@@ -4,7 +4,8 @@
 
 namespace fovea::cli {
 
-/// While it lives, the first SIGINT or SIGTERM cancels `context` and a second one kills the process.
+/// While it lives, the first SIGINT or SIGTERM cancels `context` and a second one kills the process; a
+/// file that grows beyond what is allowed is an error of writing.
 /// One at a time.
 class CancelOnSignal {
  public:

@@ -50,9 +50,12 @@ std::string read_text(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-Running::Running(const std::vector<std::string>& arguments, const std::string& stdout_path)
+Running::Running(const std::vector<std::string>& arguments, const std::string& stdout_path,
+                 const std::string& limit)
     : out_(stdout_path.empty() ? folder_ / "out" : ""), err_(folder_ / "err") {
   std::vector<std::string> words{FOVEA_PROGRAM};
+  if (!limit.empty())
+    words = {"/bin/sh", "-c", "ulimit -c 0; ulimit " + limit + "; exec \"$0\" \"$@\"", FOVEA_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -65,7 +68,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::string& s
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (out_.empty() ? stdout_path : out_).c_str(),
                                    kWrite, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kWrite, 0600);
-  const int failed = posix_spawn(&process_, FOVEA_PROGRAM, &actions, nullptr, argv.data(), environ);
+  const int failed = posix_spawn(&process_, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw std::runtime_error("cannot start " FOVEA_PROGRAM);
 }
@@ -76,10 +79,10 @@ Running::~Running() {
   waitpid(process_, nullptr, 0);
 }
 
-bool Running::wait_for_talk() const {
+bool Running::wait_for_talk(const std::string& text) const {
   for (int i = 0; i < 1000; ++i) {
-    std::error_code ignored;
-    if (fs::file_size(err_, ignored) > 0 && !ignored) return true;
+    const std::string talk = read_text(err_);
+    if (!talk.empty() && talk.find(text) != talk.npos) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return false;
@@ -97,6 +100,10 @@ Outcome Running::wait() {
 
 Outcome fovea(const std::vector<std::string>& arguments, const std::string& stdout_path) {
   return Running(arguments, stdout_path).wait();
+}
+
+Outcome fovea_within(const std::string& limit, const std::vector<std::string>& arguments) {
+  return Running(arguments, {}, limit).wait();
 }
 
 std::string square_obj() { return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"; }

@@ -41,13 +41,14 @@ std::string read_text(const std::string& path);
 /// The program, started with arguments and not waited for.
 class Running {
  public:
-  explicit Running(const std::vector<std::string>& arguments, const std::string& stdout_path = {});
+  explicit Running(const std::vector<std::string>& arguments, const std::string& stdout_path = {},
+                   const std::string& limit = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
-  /// Waits until something is on stderr, for ten seconds at most.
-  bool wait_for_talk() const;
+  /// Waits until something is on stderr, or that text, for ten seconds at most.
+  bool wait_for_talk(const std::string& text = {}) const;
   void send(int signal) const;
   Outcome wait();
 
@@ -59,6 +60,9 @@ class Running {
 
 /// Runs the program to its end. `stdout_path` takes stdout instead of `Outcome::out`.
 Outcome fovea(const std::vector<std::string>& arguments, const std::string& stdout_path = {});
+
+/// The same within a limit of the shell's: `limit` is what `ulimit` is told, such as "-f 1".
+Outcome fovea_within(const std::string& limit, const std::vector<std::string>& arguments);
 
 /// A model of two triangles (a unit square) without textures, as OBJ text.
 std::string square_obj();

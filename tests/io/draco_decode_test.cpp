@@ -96,6 +96,15 @@ TEST(DracoDecode, OtherVersionsAreUnsupported) {
   }
 }
 
+// Any byte may stand where a truth value is read, which is undefined; tests/fuzz/seeds/draco has one.
+TEST(DracoDecode, TruthValuesAreRefused) {
+  auto stream = from_hex(kSequential);
+  ASSERT_EQ(stream[23], std::byte{9}) << "the position's type, float";
+  stream[23] = std::byte{11};
+  const std::vector<DracoAttribute> position{{0, shape(3, 4)}};
+  EXPECT_THROW(decode_draco(stream, position, 2), Error);
+}
+
 TEST(DracoDecode, UncompressedAttributesMayStandBesideTheStream) {
   GltfBuilder builder = square(kEdgebreaker);
   const int heat = builder.add_accessor<float>({1, 2, 3, 4}, "SCALAR");

@@ -322,5 +322,16 @@ TEST(ImageCodec, WrongOptionsAreTheUsersFault) {
   expect_usage([] { encode_png(Image8{}); });
 }
 
+// What stands in front must not hide the size from the limit on pixels.
+TEST(ImageCodec, JpegMarkersThatStandAloneHaveNoLength) {
+  const Image8 image(16, 8, 3, ColorEncoding::srgb);
+  std::vector<std::uint8_t> bytes = encode_jpeg(image, 90);
+  const std::vector<std::uint8_t> restart{0xFF, 0xD0, 0xFF, 0x01};
+  bytes.insert(bytes.begin() + 2, restart.begin(), restart.end());
+  EXPECT_EQ(image_info(bytes).width, 16);
+  EXPECT_EQ(image_info(bytes).height, 8);
+  EXPECT_EQ(decode_image(bytes).width, 16);
+}
+
 }  // namespace
 }  // namespace fovea

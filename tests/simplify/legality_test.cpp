@@ -101,5 +101,41 @@ TEST(Legality, ATriangleMustNotTurnOverInTheTexture) {
   EXPECT_FALSE(legality.texture(merge));
 }
 
+/// A sheet with an ear at its left end, and a strap from its lower corners to a triangle of its own below.
+TriMesh sheet_with_ear_and_strap() {
+  test::PartBuilder part;
+  const std::uint32_t a = part.vertex({0, 0, 0}, {0, 0}), b = part.vertex({1, 0, 0}, {1, 0}),
+                      c = part.vertex({1, 1, 0}, {1, 1}), d = part.vertex({0, 1, 0}, {0, 1}),
+                      ear = part.vertex({-1, 0.5f, 0}, {-1, 0.5f}),
+                      low = part.vertex({0.5f, -1, 0}, {0.5f, -1}), left = part.vertex({0, -2, 0}, {0, -2}),
+                      right = part.vertex({1, -2, 0}, {1, -2});
+  part.quad(a, b, c, d);
+  part.triangle(a, d, ear);
+  part.triangle(a, low, b);
+  part.triangle(low, left, right);
+  return test::weld_part(part.part());
+}
+
+TEST(Legality, ALockedVertexKeepsItsLastTriangle) {
+  CollapseState state = test::state_of(sheet_with_ear_and_strap());
+  Legality legality(state);
+  const std::uint32_t a = test::vertex_at(state, {0, 0, 0}), d = test::vertex_at(state, {0, 1, 0}),
+                      ear = test::vertex_at(state, {-1, 0.5f, 0});
+  legality.look_at(a, d);
+  EXPECT_FALSE(legality.loses_locked());
+  state.mesh.vertices[ear].locked = 1;
+  EXPECT_TRUE(legality.loses_locked());
+  EXPECT_FALSE(legality.cuts_strap()) << "an ear may shrink";
+}
+
+TEST(Legality, AStrapIsCutWithItsOnlyTriangle) {
+  CollapseState state = test::state_of(sheet_with_ear_and_strap());
+  Legality legality(state);
+  legality.look_at(test::vertex_at(state, {0, 0, 0}), test::vertex_at(state, {1, 0, 0}));
+  EXPECT_TRUE(legality.cuts_strap());
+  legality.look_at(test::vertex_at(state, {1, 0, 0}), test::vertex_at(state, {1, 1, 0}));
+  EXPECT_FALSE(legality.cuts_strap());
+}
+
 }  // namespace
 }  // namespace fovea

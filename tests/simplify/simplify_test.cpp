@@ -398,6 +398,46 @@ TEST(Simplify, NormalsAreUnitAndFollowTheSurface) {
   }
 }
 
+TEST(Simplify, TangentsAreUnitAndKeepTheirSide) {
+  // They turn by a right angle along the strip, so that mixed ones are shorter than one.
+  test::PartBuilder builder(-1, true, true);
+  VertexArray tangents;
+  tangents.semantic = Semantic::tangent;
+  tangents.width = 4;
+  constexpr int kQuads = 16;
+  for (int i = 0; i <= kQuads; ++i) {
+    const float x = static_cast<float>(i) / kQuads, angle = 1.5f * x;
+    for (const float y : {0.0f, 1.0f}) {
+      builder.vertex({x, y, 0}, {x, y});
+      tangents.values.insert(tangents.values.end(), {std::cos(angle), std::sin(angle), 0, -1});
+    }
+  }
+  for (std::uint32_t i = 0; i < kQuads; ++i) builder.quad(2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
+  builder.part().attributes.push_back(tangents);
+  const SimplifyResult result = run_ratio(test::model_of(test::weld_part(builder.part())), 0.2);
+  const AttributeLayer& layer = *surface(result).find(Semantic::tangent);
+  for (std::size_t i = 0; i < layer.size(); ++i) {
+    const float* t = layer.value(ValueId{i});
+    EXPECT_NEAR(length(Vec3d{t[0], t[1], t[2]}), 1, 1e-5);
+    EXPECT_EQ(t[3], -1);
+  }
+}
+
+TEST(Simplify, WhatLiesOnEachOtherIsNotLost) {
+  // Every triangle of a ball twice, once either way round.
+  Model model = test::model_of(test::icosphere(1));
+  TriMesh& mesh = model.meshes[0].surface;
+  for (std::size_t f = mesh.face_count(); f-- > 0;) {
+    auto [a, b, c] = mesh.triangles[f];
+    mesh.triangles.push_back({a, c, b});
+    mesh.face_part.push_back(0);
+    for (AttributeLayer& layer : mesh.layers) {
+      for (const std::size_t k : {0, 2, 1}) layer.corner_value.push_back(layer.corner_value[3 * f + k]);
+    }
+  }
+  EXPECT_GT(run_ratio(model, 0).triangles_after, 0u);
+}
+
 // --- Importance ------------------------------------------------------------------------------------
 
 TEST(Simplify, ImportanceKeepsTriangles) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fovea/base/error.h"
 #include "fovea/base/random.h"
 
 namespace fovea {
@@ -83,6 +84,39 @@ TEST(ClosestPoint, OfEquallyNearTheLowestNumber) {
 TEST(ClosestPoint, NothingIsInfinitelyFar) {
   const Surface empty;
   EXPECT_EQ(ClosestPoint(empty).nearest({}).distance, std::numeric_limits<double>::infinity());
+}
+
+/// A square whose corners are at ±size, and the largest and smallest sizes at which it may be: Embree itself
+/// takes nothing beyond 10¹⁸ and loses what is near 0.
+Surface square(float size) {
+  return {{{-size, -size, 0}, {size, -size, 0}, {size, size, 0}, {-size, size, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+}
+constexpr float kSizes[] = {1e-30f, 1e-12f, 1, 1e15f, 1e30f};
+
+TEST(ClosestPoint, WorksAtAnySize) {
+  for (const float size : kSizes) {
+    const Surface surface = square(size);
+    const double s = static_cast<double>(size);
+    const ClosestPoint::Hit hit = ClosestPoint(surface).nearest({-0.5 * s, 0.5 * s, s});
+    EXPECT_EQ(hit.triangle, 1u) << size;
+    EXPECT_NEAR(hit.distance / s, 1, 1e-9) << size;
+  }
+}
+
+TEST(ClosestPoint, APointFarOutsideHasOneToo) {
+  const Surface surface = square(1);
+  const ClosestPoint::Hit hit = ClosestPoint(surface).nearest({0, 1e30, 0});
+  EXPECT_NEAR(hit.point.y, 1, 1e-9);
+}
+
+TEST(ClosestPoint, RefusesPositionsThatAreNotFinite) {
+  const Surface surface = square(std::numeric_limits<float>::infinity());
+  try {
+    const ClosestPoint tree(surface);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::unsupported);
+  }
 }
 
 }  // namespace

@@ -101,5 +101,22 @@ TEST(FacingPoint, FindsWhatLookingAtEveryTriangleFinds) {
   EXPECT_GT(found, 50);
 }
 
+TEST(FacingPoint, WorksAtAnySize) {
+  for (const float size : {1e-30f, 1e-12f, 1e15f, 1e30f}) {
+    const double s = static_cast<double>(size);
+    Surface wall;
+    add_square(wall, 0.01f, true);
+    add_square(wall, 0, false);
+    for (Vec3f& p : wall.positions) p = p * size;
+    const FacingPoint tree(wall, std::vector<std::uint32_t>(4, 0));
+    for (const auto& hit : {tree.along_normal(query({0.3 * s, 0.1 * s, 0}, {0, 0, 1}, s)),
+                            tree.nearest(query({0.3 * s, 0.1 * s, 0}, {0, 0, 1}, s))}) {
+      ASSERT_TRUE(hit) << size;
+      EXPECT_LT(hit->triangle, 2u) << size;
+      EXPECT_NEAR(hit->distance / s, 0.01, 1e-6) << size;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fovea

@@ -72,5 +72,22 @@ TEST(Occlusion, IsThatOfAllTrianglesOneByOne) {
   EXPECT_LT(hidden, 1800);
 }
 
+TEST(Occlusion, WorksAtAnySizeAndFromAnyDistance) {
+  for (const float size : {1e-30f, 1e-12f, 1.0f, 1e15f, 1e30f}) {
+    const Surface surface{{{0, 0, size}, {size, 0, size}, {0, size, size}}, {{0, 1, 2}}};
+    const double s = static_cast<double>(size);
+    const Occlusion occlusion(surface, {true});
+    for (const double far : {2.0, 1e7}) {
+      EXPECT_TRUE(occlusion.hides({0.2 * s, 0.2 * s, 0}, {0.2 * s, 0.2 * s, far * s})) << size;
+      EXPECT_FALSE(occlusion.hides({0.8 * s, 0.8 * s, 0}, {0.8 * s, 0.8 * s, far * s})) << size;
+    }
+  }
+}
+
+TEST(Occlusion, AnEyeBeyondAllNumbersOfSinglePrecision) {
+  const Surface surface = sheet(1);
+  EXPECT_TRUE(Occlusion(surface, {true}).hides({0.2, 0.2, 0}, {0.2, 0.2, 1e60}));
+}
+
 }  // namespace
 }  // namespace fovea

@@ -106,6 +106,24 @@ TEST(Pose, JointsBendTheSurface) {
   }
 }
 
+// Files may store joints as signed bytes or floats, and any weight.
+TEST(Pose, JointsThatAreNotThereAndWeightsThatAreNoneMoveNothing) {
+  Model model = test::skinned_model(4);
+  const Pose pose = rest_pose(model);
+  const std::vector<Vec3f> at_rest = posed_surface(model, pose, instances(model, pose)[0]).positions;
+  TriMesh& mesh = model.meshes[0].surface;
+  AttributeLayer &joints = *mesh.find(Semantic::joints), &weights = *mesh.find(Semantic::weights);
+  for (std::size_t v = 0; v < joints.size(); ++v) {
+    joints.value(ValueId{v})[2] = v % 2 == 0 ? -128.0f : 1e30f;
+    joints.value(ValueId{v})[3] = 0;
+  }
+  for (std::size_t v = 0; v < weights.size(); ++v) {
+    weights.value(ValueId{v})[2] = 1;
+    weights.value(ValueId{v})[3] = std::nanf("");
+  }
+  EXPECT_EQ(posed_surface(model, pose, instances(model, pose)[0]).positions, at_rest);
+}
+
 TEST(Pose, ASkinnedMeshIsPlacedByItsJointsAlone) {
   Model model = test::skinned_model(4);
   const Pose before = rest_pose(model);

@@ -185,6 +185,19 @@ TEST(Rebake, AnyMeshComesThrough) {
   }
 }
 
+TEST(Rebake, AnImageWhoseTrianglesAllWentStays) {
+  const Model original = test::textured(test::two_part_grid(2, 1), 1);
+  Model simplified = original;
+  TriMesh& mesh = simplified.meshes[0].surface;
+  mesh.triangles.clear();
+  mesh.face_part.clear();
+  for (AttributeLayer& layer : mesh.layers) layer.corner_value.clear();
+  for (const bool normals : {false, true}) {
+    const Shrunk found = shrink(simplified, rebake_of(original, normals));
+    EXPECT_EQ(found.model.images.at(0), original.images[0]);
+  }
+}
+
 TEST(Rebake, TiledImagesStayAndItIsSaid) {
   Model model = test::textured(test::grid(2, 2), 1);
   for (float& x : model.meshes[0].surface.find(Semantic::uv)->values) x *= 3;

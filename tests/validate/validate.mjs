@@ -11,7 +11,7 @@
 import { execFile } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import validator from 'gltf-validator';
+import { validate } from './validator.mjs';
 
 const SKIPPED = 77;
 // Exit codes of fovea (fovea/base/error.h).
@@ -27,20 +27,6 @@ function run(...words) {
       resolve({ code: error ? (error.code ?? error.signal) : 0, text: stderr.trim() });
     });
   });
-}
-
-async function validate(file) {
-  const folder = path.dirname(file);
-  const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)), {
-    uri: path.basename(file),
-    maxIssues: 0,
-    externalResourceFunction: async (uri) =>
-      new Uint8Array(fs.readFileSync(path.join(folder, decodeURIComponent(uri)))),
-  });
-  return {
-    errors: report.issues.messages.filter((message) => message.severity === 0),
-    triangles: report.info?.totalTriangleCount ?? 0,
-  };
 }
 
 // Runs one command that makes `output` of `input`; returns what is wrong with it, or nothing. A file that has

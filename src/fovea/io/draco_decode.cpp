@@ -113,6 +113,9 @@ Accessor read_attribute(const draco::Mesh& mesh, const DracoAttribute& wanted) {
     fail(fmt::format("Draco attribute {} has {} components but its accessor {}", wanted.id,
                      from->num_components(), wanted.shape.width));
   }
+  // Read as such, whatever bytes there are: no file has them, as glTF has no such type.
+  if (from->data_type() == draco::DT_BOOL)
+    fail(fmt::format("Draco attribute {} holds truth values, not numbers", wanted.id));
   Accessor out;
   out.storage = wanted.shape.storage;
   out.width = wanted.shape.width;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 #include "fovea/base/error.h"
 #include "fovea/io/meshopt_decode.h"
@@ -253,7 +255,9 @@ std::vector<std::byte> DataReader::side_file(const std::string& relative_path, c
     throw Error(ErrorKind::input,
                 fmt::format("the file {} is not in the model's folder", shown(relative_path)), at.place());
   }
-  const std::uint64_t size = std::filesystem::file_size(*file);
+  std::error_code vanished;
+  const std::uint64_t size = std::filesystem::file_size(*file, vanished);
+  if (vanished) throw Error(ErrorKind::input, vanished.message(), file->string());
   if (side_files_.insert(*file).second) budget_.add_input(size);
   budget_.charge(size, 1, at.place());
   return read_file(*file, options_.max_file_bytes);

@@ -81,6 +81,10 @@ ImageInfo jpeg_info(Encoded bytes) {
       ++at;  // fill byte
       continue;
     }
+    if (marker == 0x01 || (marker >= 0xD0 && marker <= 0xD7)) {
+      at += 2;  // these stand alone
+      continue;
+    }
     if (is_frame_marker(marker)) {
       if (at + 10 > bytes.size()) return {};
       const int components = bytes[at + 9];
@@ -138,7 +142,7 @@ Image8 decode_image(Encoded encoded, std::int64_t max_pixels) {
   const ImageInfo info = image_info(encoded);
   check_size(info, max_pixels);
   if (info.mime_type == "image/png") return decode_png(encoded);
-  if (info.mime_type == "image/jpeg") return decode_jpeg(encoded);
+  if (info.mime_type == "image/jpeg") return decode_jpeg(encoded, info);
   if (info.mime_type == "image/webp") return decode_webp(encoded);
   if (info.mime_type == "image/ktx2") throw Error(ErrorKind::unsupported, "KTX2 images cannot be decoded");
   const bool looks_known = has_at(encoded, 0, kPngMagic) || has_at(encoded, 0, kJpegMagic) ||

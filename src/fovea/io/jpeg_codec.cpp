@@ -140,9 +140,12 @@ struct JpegWriter {
 
 }  // namespace
 
-Image8 decode_jpeg(std::span<const std::uint8_t> encoded) {
+Image8 decode_jpeg(std::span<const std::uint8_t> encoded, const ImageInfo& info) {
   Reader reader;
   if (!reader.start(encoded)) reader.fail();
+  if (static_cast<int>(reader.codec.output_width) != info.width ||
+      static_cast<int>(reader.codec.output_height) != info.height)
+    throw Error(ErrorKind::format, "the JPEG image has more than one size");
   const bool is_inked = reader.codec.out_color_space == JCS_CMYK;
   Image8 image(static_cast<int>(reader.codec.output_width), static_cast<int>(reader.codec.output_height),
                is_inked ? 3 : reader.codec.output_components, ColorEncoding::srgb);

@@ -10,7 +10,8 @@
 
 namespace fovea {
 
-Image8 decode_jpeg(std::span<const std::uint8_t> encoded);
+/// Throws Error(format) for another size than `info`, whose limits were checked.
+Image8 decode_jpeg(std::span<const std::uint8_t> encoded, const ImageInfo& info);
 std::vector<std::uint8_t> compress_jpeg(const Image8& image, int quality);
 
 }  // namespace fovea

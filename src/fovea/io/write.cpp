@@ -41,7 +41,11 @@ fs::file_status status_of(const fs::path& path) {
 }
 
 void check_replaceable(const fs::path& path, bool force) {
-  const fs::file_status status = status_of(path);
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  // Neither there nor missing: a name that is too long, a folder that may not be entered.
+  if (status.type() == fs::file_type::none)
+    throw Error(ErrorKind::output, fmt::format("cannot write: {}", error.message()), path.string());
   if (!fs::exists(status)) return;
   if (fs::is_directory(status)) throw Error(ErrorKind::output, "a folder has this name", path.string());
   if (!fs::is_regular_file(status))

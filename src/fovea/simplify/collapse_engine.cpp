@@ -472,6 +472,10 @@ void Engine::try_edge(Due& due) {
     put_off(due);
     return;
   }
+  if (legality_.loses_locked() || (options_.keep_topology && legality_.cuts_strap())) {
+    put_off(due);
+    return;
+  }
   if (is_legal(due.item, due.place.position)) {
     take_or_requeue(due, due.place);
     return;
@@ -573,6 +577,10 @@ void Engine::count_blocked() {
       ++outcome_.blocked.locked;
     } else if (!legality_.look_at(a, b)) {
       ++(legality_.topology() == Block::last ? outcome_.blocked.last : outcome_.blocked.topology);
+    } else if (legality_.loses_locked()) {
+      ++outcome_.blocked.locked;
+    } else if (options_.keep_topology && legality_.cuts_strap()) {
+      ++outcome_.blocked.topology;
     } else {
       ++outcome_.blocked.flip;
     }

@@ -26,7 +26,7 @@ std::uint32_t CollapseStepper::collapse(std::uint32_t e, Vec3d p, double error) 
   } else {
     merge_edges(a, b);
   }
-  drop_coincident_faces(b);
+  drop_coincident_faces();
 
   const Quadric q = mesh_.quadric(a) + mesh_.quadric(b);
   mesh_.vertices[b].position = Vec3f(p);
@@ -135,27 +135,15 @@ void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
   });
 }
 
-/// After a collapse that pinches the surface two triangles can lie on each other. Back to back they
-/// enclose nothing: both go. Of two that face the same way one goes.
-void CollapseStepper::drop_coincident_faces(std::uint32_t b) {
-  if (!legality_.may_coincide()) return;
-  ring_.clear();
-  mesh_.for_ring(b, [&](std::uint32_t c) { ring_.push_back(c); });
-  for (std::size_t i = 0; i < ring_.size(); ++i) {
-    if (!mesh_.face_alive(ring_[i] / 3)) continue;
-    const CornerView one = mesh_.view(ring_[i]);
-    for (std::size_t j = i + 1; j < ring_.size(); ++j) {
-      if (!mesh_.face_alive(ring_[j] / 3)) continue;
-      const CornerView other = mesh_.view(ring_[j]);
-      const bool back_to_back = one.next == other.previous && one.previous == other.next;
-      if (!back_to_back && !(one.next == other.next && one.previous == other.previous)) continue;
-      drop_face(ring_[j] / 3);
-      if (back_to_back) {
-        drop_face(ring_[i] / 3);
-        break;
-      }
-    }
-  }
+/// After a collapse that pinches the surface triangles from either end can lie on each other. Back to back
+/// they enclose nothing: both go. Of two that face the same way one goes. What lay on each other before stays
+/// so.
+void CollapseStepper::drop_coincident_faces() {
+  legality_.for_coincident([&](std::uint32_t c, std::uint32_t d) {
+    if (!mesh_.face_alive(c / 3) || !mesh_.face_alive(d / 3)) return;
+    if (mesh_.view(c).next != mesh_.view(d).next) drop_face(d / 3);
+    drop_face(c / 3);
+  });
 }
 
 /// Values that lost their last triangle (a chart that ends) stay in the error as they were: what they make

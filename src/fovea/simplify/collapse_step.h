@@ -47,7 +47,7 @@ class CollapseStepper {
   void give_ring(std::uint32_t a, std::uint32_t b, KeptFor&& kept_for);
   void merge_edges(std::uint32_t a, std::uint32_t b);
   void merge_twins(std::uint32_t a, std::uint32_t b);
-  void drop_coincident_faces(std::uint32_t b);
+  void drop_coincident_faces();
   void leave_edge(std::uint32_t e, std::uint32_t half_edge);
   void drop_face(std::uint32_t f);
   void retire_values(std::uint32_t a, std::uint32_t b);
@@ -76,7 +76,6 @@ class CollapseStepper {
   std::vector<TwinEdges> twins_;
   // Scratch:
   VertexNotes notes_;
-  std::vector<std::uint32_t> ring_;
 };
 
 }  // namespace fovea

@@ -102,6 +102,53 @@ void Legality::make_room(std::size_t corners) {
   shared_at_b_.resize(corners);
 }
 
+/// Whether a triangle at either end goes: it is on the edge, or another comes to lie on it.
+bool Legality::goes(std::uint32_t face) const {
+  const auto shared = shared_faces(b_);
+  bool goes = std::find(shared.begin(), shared.end(), face) != shared.end();
+  for_coincident([&](std::uint32_t c, std::uint32_t d) { goes |= c / 3 == face || d / 3 == face; });
+  return goes;
+}
+
+bool Legality::loses_locked() const {
+  const CollapseMesh& mesh = state_.mesh;
+  const auto is_lost = [&](std::uint32_t v) {
+    if (!mesh.vertices[v].locked || v == a_ || v == b_) return false;
+    const auto ring = mesh.ring(v);
+    return std::all_of(ring.begin(), ring.end(), [&](std::uint32_t c) { return goes(c / 3); });
+  };
+  const auto loses = [&](std::uint32_t face) {
+    const auto& corners = mesh.faces[face].vertex;
+    return std::any_of(corners.begin(), corners.end(), is_lost);
+  };
+  const auto shared = shared_faces(b_);
+  bool lost = std::any_of(shared.begin(), shared.end(), loses);
+  for_coincident([&](std::uint32_t c, std::uint32_t) { lost |= loses(c / 3); });
+  return lost;
+}
+
+bool Legality::cuts_strap() const {
+  const CollapseMesh& mesh = state_.mesh;
+  const auto is_cut = [&](std::uint32_t w) {
+    if (w == a_ || w == b_) return false;
+    const auto shared = shared_faces(b_);
+    bool has_others = false;
+    for (const std::uint32_t c : mesh.ring(w)) {
+      if (std::find(shared.begin(), shared.end(), c / 3) != shared.end()) continue;
+      has_others = true;
+      for (const std::uint32_t v : mesh.faces[c / 3].vertex) {
+        if (v == a_ || v == b_) return false;
+      }
+    }
+    return has_others;
+  };
+  for (const std::uint32_t f : shared_faces(b_)) {
+    const auto& corners = mesh.faces[f].vertex;
+    if (std::any_of(corners.begin(), corners.end(), is_cut)) return true;
+  }
+  return false;
+}
+
 bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
   const Vec3d p1 = state_.mesh.position(face.next), p2 = state_.mesh.position(face.previous);
   const Vec3d before = cross(p1 - from, p2 - from), after = cross(p1 - to, p2 - to);
@@ -113,7 +160,10 @@ bool Legality::keeps_shape(const Far& face, Vec3d from, Vec3d to) const {
   };
   const double cosine = dot(before, after);
   const bool keeps_side = cosine > 0 && cosine * cosine > kMaxTurnCosine * kMaxTurnCosine * before2 * after2;
-  return (keeps_side && !is_sliver(to, after2)) || is_sliver(from, before2);
+  if (keeps_side && !is_sliver(to, after2)) return true;
+  // A sliver may stay one, but not with two corners at one place: whoever reads that drops it.
+  const Vec3f place(to);
+  return is_sliver(from, before2) && place != Vec3f(p1) && place != Vec3f(p2);
 }
 
 bool Legality::shape(Vec3d p) const {

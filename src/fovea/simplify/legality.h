@@ -36,6 +36,25 @@ class Legality {
   /// Whether a and b have no neighbour in common but those across their triangles, each of which is across
   /// one.
   bool is_plain() const { return is_plain_; }
+  /// Whether a locked vertex beside the edge would go with its last triangle.
+  bool loses_locked() const;
+  /// Whether a vertex across the edge has triangles, but none that would still join it to the edge's ends: a
+  /// strap between two vertices goes.
+  bool cuts_strap() const;
+  /// Calls f(c, d) for the corners at a and at b that are about to be the same place of two triangles on each
+  /// other, one from either end.
+  template <class F>
+  void for_coincident(F&& f) const {
+    if (!may_coincide()) return;
+    for (std::size_t j = far_at_a_; j < far_count_; ++j) {
+      for (std::size_t i = 0; i < far_at_a_; ++i) {
+        const Far &at_a = far_[i], &at_b = far_[j];
+        const bool same_way = at_a.next == at_b.next && at_a.previous == at_b.previous;
+        if (same_way || (at_a.next == at_b.previous && at_a.previous == at_b.next))
+          f(at_a.corner, at_b.corner);
+      }
+    }
+  }
   /// Whether the edge leaves triangles on each other.
   bool may_coincide() const { return topology_ == Block::topology; }
 
@@ -52,6 +71,7 @@ class Legality {
     std::uint32_t next, previous;  // vertices
   };
   void make_room(std::size_t corners);
+  bool goes(std::uint32_t face) const;
   bool keeps_shape(const Far& face, Vec3d from, Vec3d to) const;
   bool keeps_texture(const Far& face, std::size_t channel, const float* planned) const;
 

@@ -347,7 +347,10 @@ Model replay(const Model& model, const CollapseRecord& record, std::size_t step_
   for (const Mesh& mesh : model.meshes) sources.push_back(&mesh.surface);
   std::vector<TriMesh> surfaces = replay(sources, record, step_count);
   Model level = model;
-  for (std::size_t m = 0; m < surfaces.size(); ++m) level.meshes[m].surface = std::move(surfaces[m]);
+  for (std::size_t m = 0; m < surfaces.size(); ++m) {
+    // As `simplify` does it: what has no triangles is left as it is.
+    if (sources[m]->face_count() > 0) level.meshes[m].surface = std::move(surfaces[m]);
+  }
   return level;
 }
 

@@ -1,10 +1,26 @@
 #include "fovea/simplify/value_merge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace fovea {
+
+namespace {
+
+/// Sets a unit vector: that of `direction`, or the first three of `instead` where opposing ones have
+/// cancelled.
+void set_direction(Vec3d direction, const float* instead, float* out) {
+  constexpr double kCancelled = 1e-3;
+  const Vec3f unit(normalized(direction));
+  const bool cancelled = !(length(direction) >= kCancelled);
+  const std::array<float, 3> set{cancelled ? instead[0] : unit.x, cancelled ? instead[1] : unit.y,
+                                 cancelled ? instead[2] : unit.z};
+  std::copy(set.begin(), set.end(), out);
+}
+
+}  // namespace
 
 void ValueMerge::plan(std::uint32_t e, std::uint32_t a, std::uint32_t b, Vec3d p) {
   if (plans_.empty()) return;
@@ -41,8 +57,9 @@ void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t ro
     return;
   }
 
+  const float* const nearer = along_ < 0.5f ? at_a : at_b;
   if (channel.kind == ChannelKind::nearest || placement_ == Placement::half_edge) {
-    std::copy_n(along_ < 0.5f ? at_a : at_b, width, out);
+    std::copy_n(nearer, width, out);
     return;
   }
   if (channel.kind == ChannelKind::skin) {
@@ -50,7 +67,9 @@ void ValueMerge::plan_class(const Channel& channel, Plan& plan, std::uint32_t ro
     return;
   }
   for (std::size_t k = 0; k < width; ++k) out[k] = at_a[k] + (at_b[k] - at_a[k]) * along_;
-  if (channel.semantic == Semantic::tangent) out[3] = (along_ < 0.5f ? at_a : at_b)[3];
+  if (channel.semantic == Semantic::tangent) out[3] = nearer[3];
+  if (channel.semantic == Semantic::tangent || channel.semantic == Semantic::normal)
+    set_direction({out[0], out[1], out[2]}, nearer, out);
   // Along a seam (more than one value at an end) texture coordinates stay on it: mixed, not fitted.
   if (channel.kind == ChannelKind::fitted && !(channel.is_uv() && plan.classes.size() > 2))
     fit(channel, plan, root, out);
@@ -77,12 +96,7 @@ void ValueMerge::fit(const Channel& channel, const Plan& plan, std::uint32_t roo
     }
   }
   if (channel.semantic != Semantic::normal) return;
-  const Vec3d n{fitted[0], fitted[1], fitted[2]};
-  if (length(n) < 1e-3) return;  // opposing normals cancel: the mixed one is as good as any
-  const Vec3d unit = normalized(n);
-  out[0] = static_cast<float>(unit.x);
-  out[1] = static_cast<float>(unit.y);
-  out[2] = static_cast<float>(unit.z);
+  set_direction({fitted[0], fitted[1], fitted[2]}, out, out);
 }
 
 /// Mixes two influence lists and keeps as many of the strongest as there is room for.

@@ -51,6 +51,7 @@ namespace {
 
 struct Query {
   const Surface* surface;
+  const EmbreeScene* scene;
   Vec3d p;
   ClosestPoint::Hit best;
 };
@@ -66,7 +67,7 @@ bool look_at_triangle(RTCPointQueryFunctionArguments* arguments) {
     return false;
   best = {q.point, distance, arguments->primID, q.weights};
   // A little more, so that rounding hides no equally near triangle.
-  arguments->query->radius = static_cast<float>(distance) * 1.00001f + std::numeric_limits<float>::min();
+  arguments->query->radius = query.scene->to_tree(distance) * 1.00001f + std::numeric_limits<float>::min();
   return true;
 }
 
@@ -78,12 +79,13 @@ ClosestPoint::ClosestPoint(ClosestPoint&&) noexcept = default;
 ClosestPoint& ClosestPoint::operator=(ClosestPoint&&) noexcept = default;
 
 ClosestPoint::Hit ClosestPoint::nearest(Vec3d p) const {
-  Query query{tree_->surface, p, {{}, std::numeric_limits<double>::infinity(), 0, {}}};
+  Query query{tree_->surface, &tree_->scene, p, {{}, std::numeric_limits<double>::infinity(), 0, {}}};
   if (tree_->scene.empty()) return query.best;
   RTCPointQuery point;
-  point.x = static_cast<float>(p.x);
-  point.y = static_cast<float>(p.y);
-  point.z = static_cast<float>(p.z);
+  const Vec3f at = tree_->scene.to_tree(p);
+  point.x = at.x;
+  point.y = at.y;
+  point.z = at.z;
   point.time = 0;
   point.radius = std::numeric_limits<float>::infinity();
   RTCPointQueryContext context;

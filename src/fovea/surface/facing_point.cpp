@@ -78,7 +78,8 @@ struct FacingPoint::Tree {
     const double distance = length(at.point - search.query.point);
     if (!search.offer(arguments->primID, distance, at)) return false;
     // A little more, so that rounding hides no equally near triangle.
-    arguments->query->radius = static_cast<float>(distance) * 1.00001f + std::numeric_limits<float>::min();
+    arguments->query->radius =
+        search.tree->scene.to_tree(distance) * 1.00001f + std::numeric_limits<float>::min();
     return true;
   }
 
@@ -97,7 +98,7 @@ FacingPoint& FacingPoint::operator=(FacingPoint&&) noexcept = default;
 std::optional<ClosestPoint::Hit> FacingPoint::along_normal(const Query& query) const {
   Tree::Search search = tree_->search(query);
   if (tree_->scene.empty()) return {};
-  const Vec3f from(query.point - query.normal * query.most), along(query.normal);
+  const Vec3f from = tree_->scene.to_tree(query.point - query.normal * query.most), along(query.normal);
   RTCRayHit ray{};
   ray.ray.org_x = from.x;
   ray.ray.org_y = from.y;
@@ -105,7 +106,7 @@ std::optional<ClosestPoint::Hit> FacingPoint::along_normal(const Query& query) c
   ray.ray.dir_x = along.x;
   ray.ray.dir_y = along.y;
   ray.ray.dir_z = along.z;
-  ray.ray.tfar = static_cast<float>(2 * query.most);
+  ray.ray.tfar = tree_->scene.to_tree(2 * query.most);
   ray.ray.mask = 0xFFFFFFFF;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   Tree::RayContext context{{}, &search};
@@ -118,12 +119,12 @@ std::optional<ClosestPoint::Hit> FacingPoint::nearest(const Query& query) const 
   Tree::Search search = tree_->search(query);
   if (tree_->scene.empty()) return {};
   RTCPointQuery point;
-  const Vec3f at(query.point);
+  const Vec3f at = tree_->scene.to_tree(query.point);
   point.x = at.x;
   point.y = at.y;
   point.z = at.z;
   point.time = 0;
-  point.radius = static_cast<float>(query.most) * 1.00001f;
+  point.radius = tree_->scene.to_tree(query.most) * 1.00001f;
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(tree_->scene.get(), &point, &context, Tree::look_at_triangle, &search);

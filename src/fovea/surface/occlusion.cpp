@@ -39,7 +39,7 @@ Occlusion& Occlusion::operator=(Occlusion&&) noexcept = default;
 
 bool Occlusion::hides(Vec3d point, Vec3d eye) const {
   if (tree_->scene.empty()) return false;
-  const Vec3f from(point), along(eye - point);
+  const Vec3f from = tree_->scene.to_tree(point), along = tree_->scene.to_tree(eye - point);
   RTCRay ray{};
   ray.org_x = from.x;
   ray.org_y = from.y;

@@ -130,10 +130,12 @@ class Skinning {
       const ValueId j = joints->corner_value[corner.index()], w = weights->corner_value[corner.index()];
       if (!j.valid() || !w.valid()) continue;
       for (int k = 0; k < std::min(joints->width, weights->width); ++k) {
-        const auto joint = static_cast<std::size_t>(joints->value(j)[k]);
+        const float joint = joints->value(j)[k];
         const double weight = static_cast<double>(weights->value(w)[k]);
-        if (weight <= 0 || joint >= joints_.size()) continue;
-        for (std::size_t i = 0; i < 16; ++i) sum.m[i] += weight * joints_[joint].m[i];
+        const bool is_there = joint >= 0 && joint < static_cast<float>(joints_.size());
+        if (!(weight > 0) || !is_there) continue;
+        const Mat4& matrix = joints_[static_cast<std::size_t>(joint)];
+        for (std::size_t i = 0; i < 16; ++i) sum.m[i] += weight * matrix.m[i];
         total += weight;
       }
     }

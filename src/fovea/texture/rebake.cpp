@@ -120,6 +120,7 @@ TexelOrigins AtlasRebake::moved_origins(const Model& model, std::span<const Atla
 }
 
 Image8 AtlasRebake::baked(const Image8& image, const TexelMeaning& meaning, const Context& context) {
+  if (origin_.faces().empty()) return image;  // all of its triangles went
   Image8 filled = image;
   fill_between(filled, origin_.original_faces(), context);
   const std::vector<UvSlopes> slopes =
@@ -139,6 +140,7 @@ Image8 AtlasRebake::baked_normals(const Image8* map, double scale, int width, in
                                   const Context& context) {
   if (map == nullptr)
     return fovea::baked_normals(origin_, simplified_, nullptr, scale, width, height, context);
+  if (origin_.faces().empty()) return *map;
   Image8 filled = *map;
   fill_between(filled, origin_.original_faces(), context);
   return fovea::baked_normals(origin_, simplified_, &filled, scale, width, height, context);
