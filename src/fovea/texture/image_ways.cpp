@@ -206,10 +206,13 @@ std::vector<ImageWay> image_ways(const Image8& image, const ImageLimits& limits,
                                  const Context& context) {
   Ways ways(image, limits, faces, loss, context);
   const int sizes = limits.format == TextureFormat::png ? kPngSizes : 1;  // from a half to the next
+  std::pair<int, int> last{0, 0};
   for (int step = kMostHalvings * sizes; step >= 0; --step) {
     const auto side = [&](int whole) { return side_after(whole, step, sizes); };
     const int width = side(image.width), height = side(image.height);
     if (width >= limits.width || height >= limits.height) break;
+    if (width == last.first && height == last.second) continue;  // of images of few texels
+    last = {width, height};
     if (!ways.add_size(width, height)) return ways.take();
   }
   ways.add_size(limits.width, limits.height);

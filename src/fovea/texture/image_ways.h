@@ -38,11 +38,11 @@ Image8 resized_for_way(const Image8& image, int width, int height, const ImageUs
 
 /// Encodes an image at its limit and at the halves of its own size down to 1/32, which pictures see nearly as
 /// they see the image itself, as GPUs make the same copies of it (at 1/√2 pictures lost 10 dB more of
-/// BoomBox's colours than at 1/2), at several qualities, to see what that takes and what pictures lose:
-/// as it is, and filled between the triangles that show it, `faces` (all of them, or none if not all are
-/// known); large ones only in that of the two ways that did better with a small one. WebP without loss, too,
-/// and if it has no alpha as JPEG. There is always one way at least, the smallest image of the lowest
-/// quality, though it may take more bytes than it should.
+/// BoomBox's colours than at 1/2), or of PNG, which has no quality, at four sizes for each half, at several
+/// qualities, to see what that takes and what pictures lose: as it is, and filled between the triangles that
+/// show it, `faces` (all of them, or none if not all are known); large ones only in that of the two ways that
+/// did better with a small one. WebP without loss, too, and if it has no alpha as JPEG. There is always one
+/// way at least, the smallest image of the lowest quality, though it may take more bytes than it should.
 ///
 /// Small sizes first, and none larger than the first of which all files take too much: the time goes with
 /// `most_bytes`. Throws Error(cancelled).
