@@ -11,6 +11,7 @@
 #include "fovea/io/extension.h"
 #include "fovea/io/write.h"
 #include "fovea/saliency/model_saliency.h"
+#include "fovea/simplify/auto_metric.h"
 #include "fovea/simplify/auto_saliency.h"
 #include "fovea/simplify/salient.h"
 #include "fovea/texture/shrink.h"
@@ -49,8 +50,8 @@ class Simplify : public Verb {
           "Spend the triangles where the vertex attribute _IMPORTANCE is high."},
          {"fovea simplify vase.glb -o vase-small.glb --ratio 0.05 --saliency auto",
           "Try what people look at in several ways and keep what looks best."},
-         {"fovea simplify shoe.glb -o shoe-web.glb --ratio 0.05 --metric image",
-          "Lose what shows least in pictures from all around; takes seconds."},
+         {"fovea simplify shoe.glb -o shoe-web.glb --ratio 0.05 --best",
+          "Try all that Fovea knows and keep what looks best; takes seconds to minutes."},
          {"fovea simplify helmet.glb -o tiny.glb --ratio 0.05 --textures --max-texture 512 --bake-normals",
           "Bake the textures for the result, at most 512 texels along a side, and the shape that went "
           "into normal maps."},
@@ -77,6 +78,13 @@ class Simplify : public Verb {
         "Simplification",
         {describe_field("importance", "How much each vertex matters (1 is neutral, more keeps)", importance_),
          {"allow-miss", "Exit with 0 even if the target is not reached.", &allow_miss_, ""}});
+    arguments.add(
+        "Simplification",
+        {{"fast", "By quadrics alone: tenths of a second.", &fast_, ""},
+         {"best",
+          "Try metrics and what people look at, and keep what looks best: some twenty times as long as "
+          "without.",
+          &best_, ""}});
     OptionList saliency = describe(saliency_options_);
     arguments.add(
         "Saliency",
@@ -117,6 +125,10 @@ class Simplify : public Verb {
     Importance importance;
     if (!importance_.empty())
       importance = session.phase("importance", [&] { return load_importance(input); });
+    if (best_ && before.counts.triangles > 0) {
+      options_ =
+          session.phase("metric", input_, [&] { return choose_best_metric(model, importance, session); });
+    }
     if (saliency_ != SaliencySource::none && before.counts.triangles > 0) {
       importance =
           session.phase("saliency", input_, [&] { return with_saliency(model, importance, session); });
@@ -148,6 +160,10 @@ class Simplify : public Verb {
       return std::find(metrics.begin(), metrics.end(), options_.metric) != metrics.end();
     };
     need_format(arguments, write_options_);
+    arguments.need({{"metric", "metric-from", "saliency"},
+                    "neither --fast nor --best",
+                    [this] { return !fast_ && !best_; },
+                    "they say which"});
     need_textures(arguments);
     need_views(arguments, options_.views);
     arguments.need({{"metric-from"}, "--metric image, entropy or polygon-entropy", [is] {
@@ -180,6 +196,17 @@ class Simplify : public Verb {
   }
 
   void check_request() {
+    if (fast_ && best_)
+      throw Error(ErrorKind::usage, "--fast and --best are both given", {},
+                  "give one, or none for between them");
+    if (best_ && options_.per_mesh)
+      throw Error(ErrorKind::usage, "--best chooses for all meshes together", "--per-mesh",
+                  "leave out one of them");
+    if (best_ && !options_.triangles && !options_.ratio)
+      throw Error(ErrorKind::usage, "--best chooses for a number of triangles", {},
+                  "give --triangles or --ratio, with --bytes or --error if these are to hold, too");
+    if (fast_) options_.metric = Metric::quadric;
+    if (best_) saliency_ = SaliencySource::chosen;
     if (!options_.triangles && !options_.ratio && !options_.error && !options_.error_abs && bytes_.empty()) {
       throw Error(
           ErrorKind::usage, "no target is given", {},
@@ -210,6 +237,16 @@ class Simplify : public Verb {
     const ModelSaliency found = model_saliency(model, saliency_options_, session.context);
     session.report["saliency"] = {{"textured", found.textured}, {"poses", found.poses}};
     return product(importance, salient_importance(model, found.saliency, salient_options_, session.context));
+  }
+
+  SimplifyOptions choose_best_metric(const Model& model, const Importance& importance, Session& session) {
+    const AutoMetric found = choose_metric(model, options_, importance, session.context);
+    Json trials = Json::array();
+    for (const MetricTrial& trial : found.trials)
+      trials.push_back({{"name", trial.name}, {"flip", number_json(trial.flip)}});
+    session.report["metric"] = {
+        {"chosen", found.trials[found.best].name}, {"seconds", found.seconds}, {"trials", std::move(trials)}};
+    return found.trials[found.best].options;
   }
 
   Importance choose(const Model& model, const Importance& importance, Session& session) {
@@ -321,6 +358,7 @@ class Simplify : public Verb {
   std::string importance_;
   std::string chosen_;  ///< A line about what `auto` chose.
   bool allow_miss_ = false;
+  bool fast_ = false, best_ = false;
   bool textures_ = false;
   std::string bytes_;
   std::optional<std::uint64_t> budget_;

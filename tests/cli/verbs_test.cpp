@@ -253,6 +253,25 @@ std::pair<std::size_t, std::size_t> left_and_all(const std::string& path) {
   return {left, mesh.face_count()};
 }
 
+TEST_F(Verbs, SimplifyIsFastOrAtItsBest) {
+  const auto simplify = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"simplify", grid_, "-o", out("s.glb"), "--force", "--json"});
+    return fovea(words);
+  };
+  EXPECT_EQ(simplify({"--ratio", "0.1", "--fast"}).json()["result"]["metric"], "quadric");
+  const nlohmann::json best = simplify({"--ratio", "0.1", "--best"}).json();
+  EXPECT_EQ(best["exit_code"], 0);
+  EXPECT_EQ(best["metric"]["trials"].size(), 4u);
+  EXPECT_GT(best["saliency"]["trials"].size(), 1u);
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--fast", "--best", "--ratio", "0.1"},
+        {"--best", "--metric", "image", "--ratio", "0.1"},
+        {"--fast", "--saliency", "auto", "--ratio", "0.1"},
+        {"--best", "--bytes", "9KB"},
+        {"--best", "--per-mesh", "--ratio", "0.1"}})
+    EXPECT_EQ(simplify(wrong).code, 2) << wrong[0] << wrong[1];
+}
+
 TEST_F(Verbs, SimplifySpendsTrianglesWhereTheImportanceIs) {
   Context context;
   const Model model = read_model(grid_, {}, context);
