@@ -1,5 +1,5 @@
 // Pruning against all pairs, as Markdown: hulls.mjs FOVEA FOLDER MODEL... fits each model with one ladder of triangles
-// and one of images, once by pruning and once by drawing all pairs, from the usual 24 views, and says how far the way
+// and one of images, once by pruning and once by drawing all pairs, from the usual 24 views of 256 pixels, and says how far the way
 // is below the lower hull of all pairs at equal bytes. A minute for each.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
@@ -17,7 +17,7 @@ const out = join(folder, 'fitted.glb'), curve = join(folder, 'curve.json');
 function way(model, search) {
   // A budget of a few bytes walks to the end.
   const report = JSON.parse(execFileSync(fovea, ['fit', model, '-o', out, '--force', '--bytes', '1', '--allow-miss', '--views',
-    'rhombicuboctahedron', '--search', search, '--curve', curve, '--json'], quiet));
+    'rhombicuboctahedron', '--view-size', '256', '--search', search, '--curve', curve, '--json'], quiet));
   return { ...JSON.parse(readFileSync(curve)), drawn: report.result.pictures_of, seconds: report.seconds };
 }
 

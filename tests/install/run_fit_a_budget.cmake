@@ -1,0 +1,15 @@
+# cmake -DFOVEA=... -DPROGRAM=... -DFOLDER=... -P run_fit_a_budget.cmake: fits a sample into two budgets with the
+# example, and looks at the files.
+set(input ${FOLDER}/budget_vase.glb)
+execute_process(COMMAND ${FOVEA} sample vase --detail 0.2 -o ${input} --force COMMAND_ERROR_IS_FATAL ANY)
+file(REMOVE ${FOLDER}/budget-300kb.glb ${FOLDER}/budget-60kb.glb)
+execute_process(COMMAND ${PROGRAM} ${input} ${FOLDER}/budget 300 60 OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+message("${text}")
+foreach(kilobytes 300 60)
+  file(SIZE ${FOLDER}/budget-${kilobytes}kb.glb bytes)
+  math(EXPR most "1000 * ${kilobytes}")
+  math(EXPR least "800 * ${kilobytes}")
+  if(bytes GREATER most OR bytes LESS least)
+    message(FATAL_ERROR "the file of ${kilobytes} kB has ${bytes} bytes")
+  endif()
+endforeach()
