@@ -19,6 +19,9 @@ namespace fovea {
 
 namespace {
 
+/// Rungs that pruning looks down at once: what a rung loses is not even, and some are worse than the next.
+constexpr std::size_t kAhead = 2;
+
 void check_options(const Model& model, const FitOptions& options) {
   if (counts(model).triangles == 0) throw Error(ErrorKind::unsupported, "the model has no triangles");
   if (options.triangles && *options.triangles < 1)
@@ -144,7 +147,7 @@ class BudgetFit::Finder {
       if (all_.empty()) all_ = exhaust(joint);
       return lower_hull(all_);
     }
-    if (options_.search == FitSearch::prune) return prune(joint, bytes);
+    if (options_.search == FitSearch::prune) return prune(joint, bytes, kAhead);
     std::vector<JointPoint> path = grow(joint, bytes > 0 ? bytes : std::numeric_limits<std::uint64_t>::max());
     std::ranges::reverse(path);
     return path;
