@@ -1,5 +1,5 @@
-// One model in several sizes, each as good as its bytes allow: fit_a_budget INPUT OUTPUT-STEM KILOBYTES... writes
-// OUTPUT-STEM-200kb.glb and so on. The model is measured once; each size after the first costs little.
+// One model in several sizes, each as good as its bytes allow: fit_a_budget INPUT OUTPUT-STEM KILOBYTES...
+// writes OUTPUT-STEM-200kb.glb and so on. The model is measured once; each size after the first costs little.
 
 #include <cstdlib>
 #include <iostream>
@@ -28,14 +28,15 @@ int main(int count, char** words) {
       const std::uint64_t bytes = 1000 * std::strtoull(words[i], nullptr, 10);
       const fovea::FitResult result = fit.within(bytes);
       if (!result.reached) {
-        std::cerr << "no file takes " << bytes << " bytes: the smallest takes " << result.chosen.bytes << '\n';
+        std::cerr << "no file takes " << bytes << " bytes: the smallest takes " << result.chosen.bytes
+                  << '\n';
         return 8;
       }
       const std::string path = std::string(words[2]) + "-" + words[i] + "kb.glb";
       fovea::write_model(result.model, path, options.form.write, context);
-      std::cout << path << ": " << result.chosen.bytes << " bytes, " << result.chosen.triangles << " triangles, "
-                << result.chosen.image_bytes << " bytes of images, " << result.chosen.psnr_db
-                << " dB from the original\n";
+      std::cout << path << ": " << result.chosen.bytes << " bytes, " << result.chosen.triangles
+                << " triangles, " << result.chosen.image_bytes << " bytes of images, "
+                << result.chosen.psnr_db << " dB from the original\n";
     }
     return 0;
   } catch (const fovea::Error& error) {

@@ -69,7 +69,7 @@ class BudgetFit::Finder {
   FitResult like(FitMetric metric, double value) {
     check_likeness(metric, value);
     const auto is_like = [&](const Model& model) { return this->is_like(model, metric, value); };
-    const std::vector<JointPoint> path = walk(0);
+    const std::vector<JointPoint> path = walk_while(is_like);
     FitResult result;
     // Likeness falls along the path, all but everywhere.
     std::size_t good = 0, bad = path.size();
@@ -83,7 +83,7 @@ class BudgetFit::Finder {
     Best best{choice, at(good), ladders_.loss(choice)};
     if (reached && bad < path.size()) {
       // Between the two points fewer bytes may do.
-      constexpr std::uint64_t kNear = 32;  // parts of the bytes
+      constexpr std::uint64_t kNear = 16;  // parts of the bytes
       std::uint64_t least = path[bad].bytes / 2, most = ladders_.file_bytes(best.model);
       while (most - std::min(most, least) > most / kNear) {
         FitResult tried = within(least + (most - least) / 2);
@@ -151,6 +151,17 @@ class BudgetFit::Finder {
     std::vector<JointPoint> path = grow(joint, bytes > 0 ? bytes : std::numeric_limits<std::uint64_t>::max());
     std::ranges::reverse(path);
     return path;
+  }
+
+  /// The way down to half the bytes, a quarter, and so on, until its end is no longer like.
+  std::vector<JointPoint> walk_while(const std::function<bool(const Model&)>& is_like) {
+    if (options_.search != FitSearch::prune) return walk(0);
+    std::vector<JointPoint> path = walk(std::numeric_limits<std::uint64_t>::max());
+    for (std::uint64_t bytes = path.front().bytes / 2;; bytes /= 2) {
+      path = walk(bytes);
+      const bool is_end = path.back().bytes > bytes || bytes == 0;
+      if (is_end || !is_like(ladders_.model(ladders_.choice(path.back().rungs)))) return path;
+    }
   }
 
   /// Of `walk`, and of all points if all were measured, the best within the bytes.
