@@ -125,7 +125,10 @@ Model MeshLadders::level(std::span<const std::size_t> steps) const {
     surfaces = replay(sources, record_, taken);
   }
   Model result = model_;
-  for (std::size_t m = 0; m < surfaces.size(); ++m) result.meshes[m].surface = std::move(surfaces[m]);
+  for (std::size_t m = 0; m < surfaces.size(); ++m) {
+    // As `simplify` does it: what has no triangles is left as it is.
+    if (model_.meshes[m].surface.face_count() > 0) result.meshes[m].surface = std::move(surfaces[m]);
+  }
   return result;
 }
 
