@@ -298,8 +298,10 @@ class BudgetFit::Finder {
 
   /// What images get beside this share of the triangles' bytes; nothing if that leaves them none.
   double room_beside(const FitChoice& base, const FitChoice& choice) {
-    return static_cast<double>(bytes_) - ladders_.mesh_bytes(choice) + ladders_.mesh_bytes(base) +
-           static_cast<double>(ladders_.image_bytes(base)) - static_cast<double>(ladders_.bytes(base));
+    const double room = static_cast<double>(bytes_) - ladders_.mesh_bytes(choice) +
+                        ladders_.mesh_bytes(base) + static_cast<double>(ladders_.image_bytes(base)) -
+                        static_cast<double>(ladders_.bytes(base));
+    return std::max(room, 0.0);
   }
 
   /// Whether it is better than the best so far.
