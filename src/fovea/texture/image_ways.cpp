@@ -28,8 +28,8 @@ constexpr std::size_t kFiner = 3;
 constexpr int kLeastJpegQuality = 78;
 /// A higher quality gains nothing where a file loses hardly more than the size alone does.
 constexpr double kNearlyAll = 1.05;
-/// Texels up to which images are both filled and as they are; up to which WebP is tried without loss, which
-/// takes long; and up to which many qualities are tried.
+/// Texels up to which images are both filled and as they are; up to which WebP is always tried without loss;
+/// and up to which many qualities are tried.
 constexpr std::int64_t kSmall = 1 << 16, kMiddle = 1 << 18, kLarge = 1 << 20;
 
 /// From a quality that is tried to the next: small images are encoded in no time, and even colours may be met
@@ -105,6 +105,13 @@ class Ways {
  private:
   static std::int64_t texels(const Image8& image) { return std::int64_t{image.width} * image.height; }
 
+  /// That takes long, and is in vain for what came as a small file, as photographs do.
+  bool may_be_without_loss(std::int64_t texels) const {
+    constexpr double kLeastBytes = 1.0 / 3;  // for each texel
+    return texels <= kMiddle ||
+           (texels <= kLarge && limits_.most_bytes > kLeastBytes * static_cast<double>(texels));
+  }
+
   bool may_fill(int width) const { return is_filled_ && width < image_.width; }
 
   /// By the largest of the small images: whether files lose and take less if it is filled.
@@ -142,7 +149,7 @@ class Ways {
     const double least = std::accumulate(losses.begin(), losses.end(), 0.0);
     add_qualities(picture, {limits_.format, kLeastQuality, fill}, least);
     if (limits_.format != TextureFormat::webp) return;
-    if (texels(picture) <= kMiddle) add(picture, {TextureFormat::webp, 0, fill});
+    if (may_be_without_loss(texels(picture))) add(picture, {TextureFormat::webp, 0, fill});
     if (!image_.has_alpha()) add_qualities(picture, {TextureFormat::jpeg, kLeastJpegQuality, fill}, least);
   }
 
