@@ -59,7 +59,9 @@ class Lods : public Verb {
         "gets every step from the coarsest level to the original instead, each with its error, so that any "
         "level can be read off it, also one that is finer in places; so does a .glb with --as levels, in "
         "which other programs see the coarsest. All verbs read both as the original. Exit code 8 says "
-        "that fewer triangles were asked for than could be reached; the output is written all the same.",
+        "that fewer triangles were asked for than could be reached; the output is written all the same, but "
+        "not "
+        "if a level takes more than --bytes.",
         {{"fovea lods helmet.glb -o lods", "Four levels, each with half the triangles of the one before."},
          {"fovea lods helmet.glb -o helmet-lods.glb --triangles 8000,2000,500",
           "The original and three levels of so many triangles in one file."},

@@ -41,7 +41,7 @@ class Simplify : public Verb {
         "Reads a model, collapses edges where it shows least, and writes the result with everything else "
         "untouched, or, with --textures, with its images baked anew for what is left of the surface. Of "
         "several targets the first reached stops. Exit code 8 says that the target was not "
-        "reached; the output is written all the same.",
+        "reached; the output is written all the same, but not if it takes more than --bytes.",
         {{"fovea simplify helmet.glb -o small.glb --ratio 0.1", "Keep 10 % of the triangles."},
          {"fovea simplify scan.ply -o scan.glb --triangles 20000", "Keep 20,000 triangles."},
          {"fovea simplify chair.glb -o chair-lean.glb --error 0.002",
@@ -219,6 +219,7 @@ class Simplify : public Verb {
       fovea::check_output(path, write_options_);
     });
     if (!bytes_.empty()) budget_ = parse_bytes("--bytes", bytes_);
+    wants_bytes_alone_ = budget_ && !options_.triangles && !options_.ratio;
     if (budget_ && shrink_options_.max_bytes)
       throw Error(ErrorKind::usage, "--texture-bytes and --bytes are both given", {},
                   "--bytes finds how many of its bytes textures get");
@@ -337,7 +338,8 @@ class Simplify : public Verb {
     const std::optional<std::int64_t>& most = shrink_options_.max_bytes;
     const bool are_images_small =
         !made.shrunk || budget_ || !most || made.shrunk->bytes <= static_cast<std::uint64_t>(*most);
-    const bool reached = reached_target(result, options_) && are_images_small && bytes_reached_;
+    const bool has_count = wants_bytes_alone_ || reached_target(result, options_);
+    const bool reached = has_count && are_images_small && bytes_reached_;
     std::string texture_text;
     if (made.shrunk) {
       texture_text = tell_shrunk(session, *made.shrunk, rebake_ == Rebake::on);
@@ -363,6 +365,7 @@ class Simplify : public Verb {
   std::string bytes_;
   std::optional<std::uint64_t> budget_;
   bool bytes_reached_ = true;
+  bool wants_bytes_alone_ = false;  ///< No number of triangles, which can be missed.
   Rebake rebake_ = Rebake::on;
   ShrinkOptions shrink_options_;
   SaliencySource saliency_ = SaliencySource::none;

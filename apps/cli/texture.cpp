@@ -45,7 +45,7 @@ class TextureVerb : public Verb {
         "repeating textures close. No image's file grows; what cannot be made smaller stays as it was, with "
         "a "
         "word why. The shape is not touched. Exit code 8 says that all images together take more than "
-        "--texture-bytes; the output is written all the same.",
+        "--texture-bytes; the output is written all the same, but not if it takes more than --bytes.",
         {{"fovea texture helmet.glb -o helmet-web.glb --max-texture 1024 --texture-format webp",
           "No side above 1,024 texels, as WebP."},
          {"fovea texture chair.glb -o chair-half.glb --texture-scale 0.5",

@@ -195,10 +195,9 @@ TEST(Fit, OneFitAnswersForManyBudgets) {
     // Qualities that were tried for another budget are there for this one too.
     EXPECT_LE(again.chosen.loss, 1.02 * alone.chosen.loss);
   }
-  // The walk to fewer bytes has what is needed for more.
-  const std::size_t drawn = fit.within(whole / 20).pictures;
-  EXPECT_EQ(fit.within(whole / 20).path.size(), fit.within(whole / 20).path.size());
-  EXPECT_LT(fit.within(whole / 20).pictures - drawn, 12u);
+  // What the walk draws is known by now; some models are tried anew beside its end.
+  const FitResult before = fit.within(whole / 20), after = fit.within(whole / 20);
+  EXPECT_LT(after.pictures - before.pictures, before.path.size());
 }
 
 TEST(Fit, AllPairsAreNoBetterThanPruningByMuch) {

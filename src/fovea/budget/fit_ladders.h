@@ -27,7 +27,7 @@ struct FitChoice {
 /// The ladders of one model: what choices take, lose, and are.
 class FitLadders {
  public:
-  /// Throws as `fit`. Cost: one simplification, and images encoded in many ways.
+  /// Throws as BudgetFit. Cost: one simplification, and images encoded in many ways.
   FitLadders(const Model& model, const FitOptions& options, Context& context);
 
   const Model& original() const { return model_; }

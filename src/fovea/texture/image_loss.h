@@ -36,6 +36,12 @@ class ImageSights {
   std::vector<double> pixels_;
 };
 
+/// Sizes for ImageSights of a model that will be so many pixels long in pictures: seen aslant, and straight
+/// on.
+inline std::vector<double> sights_of(double shown_pixels) {
+  return {0.75 * shown_pixels, 1.5 * shown_pixels};
+}
+
 /// A hundredth of a step of a byte, squared: less is as good as nothing.
 inline constexpr double kLeastImageLoss = 1e-4 / (255.0 * 255.0);
 

@@ -91,14 +91,19 @@ class Ways {
     return ways_.size() > before;
   }
 
-  void add_beside(const ImageWay& way) {
+  /// Qualities beside that of a way, but for those that are `known`.
+  void add_beside(const ImageWay& way, std::span<const ImageWay> known) {
     const auto [format, quality, fill] = *way.file;
     const Image8 picture = sized(way.width, way.height, fill);
     const int step = quality_step(texels(picture)), finer = texels(picture) > kLarge    ? step / 2
                                                             : texels(picture) > kMiddle ? 3
                                                                                         : 1;
     for (int q = quality - step + finer; q < quality + step; q += finer) {
-      if (q > 0 && q <= 100 && q != quality) add(picture, {format, q, fill});
+      const FileChoice file{format, q, fill};
+      const auto is_it = [&](const ImageWay& other) {
+        return other.width == way.width && other.file == file;
+      };
+      if (q > 0 && q <= 100 && std::ranges::none_of(known, is_it)) add(picture, file);
     }
   }
 
@@ -237,7 +242,7 @@ std::vector<ImageWay> finer_ways(std::span<const ImageWay> ways, double bytes, c
                                  const ImageLimits& limits, std::span<const AtlasFace> faces,
                                  const ImageLoss& loss, const Context& context) {
   Ways finer(image, limits, faces, loss, context);
-  for (const ImageWay* way : best_kinds(ways, bytes)) finer.add_beside(*way);
+  for (const ImageWay* way : best_kinds(ways, bytes)) finer.add_beside(*way, ways);
   std::vector<ImageWay> found = finer.take();
   std::erase_if(found, [&](const ImageWay& way) { return way.bytes >= limits.most_bytes; });
   return found;

@@ -381,8 +381,7 @@ TextureBudget texture_budget(const Prepared& prepared, std::span<const WantedIma
                              const ShrinkOptions& options, std::span<const VertexField> field,
                              Context& context) {
   std::vector<double> pixels(kPictureSizes.begin(), kPictureSizes.end());
-  // As seen aslant, and straight on.
-  if (options.shown_pixels > 0) pixels = {0.75 * options.shown_pixels, 1.5 * options.shown_pixels};
+  if (options.shown_pixels > 0) pixels = sights_of(options.shown_pixels);
   return {prepared.model, prepared.files, prepared.atlases, limits,
           options.output, field,          pixels,           static_cast<double>(*options.max_bytes),
           context};

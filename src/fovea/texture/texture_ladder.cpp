@@ -37,8 +37,7 @@ struct TextureLadders::State {
         files(states_of(model)),
         atlases(find_atlases(model)),
         budget(model, files, atlases, limits_of(files, options.output), options.output, {},
-               // As seen aslant, and straight on.
-               {0.75 * options.shown_pixels, 1.5 * options.shown_pixels},
+               sights_of(options.shown_pixels),
                options.most_bytes > 0 ? static_cast<double>(options.most_bytes)
                                       : std::numeric_limits<double>::max(),
                context) {
