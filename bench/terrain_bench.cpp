@@ -2,7 +2,8 @@
 // meshes and 32 textures of it from a tenth down to a thousandth, all pairs drawn, and what marginal analysis
 // finds of them. terrain_bench [--points FILE] [--views FOLDER]
 //   --points   all pairs as CSV, with which ways pass them
-//   --views    the view of each land, whole and at its smallest, as PNG
+//   --views    the view of each land, whole, at its smallest and by three pairs of equal bytes, as PNG and
+//   WebP
 // Land is Fovea's own sample and, if FOVEA_DATA names a folder with terrain/, Puget Sound of it.
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -37,6 +39,7 @@
 #include "fovea/sample/sample.h"
 #include "fovea/simplify/simplify.h"
 #include "fovea/texture/shrink.h"
+#include "fovea/texture/texture_ladder.h"
 #include "measure.h"
 #include "subjects.h"
 
@@ -180,19 +183,18 @@ class Experiment {
     for (int i = 0; i < kMeshes; ++i)
       add_mesh(ladders, replay(land_.model, record,
                                record.steps_to(static_cast<std::uint64_t>(share(i, kMeshes) * triangles))));
-    ShrinkOptions shrink;
+    TextureLadderOptions shrink;
     shrink.output.format = TextureOutput::webp;
-    const auto whole = static_cast<double>(land_.model.images[0].bytes.size());
-    shrink.max_bytes = static_cast<std::int64_t>(whole);
     shrink.shown_pixels = kSize;
-    TextureLadder images(land_.model, shrink, context_);
+    TextureLadders images(land_.model, shrink, context_);
+    const auto whole = static_cast<double>(land_.model.images[0].bytes.size());
     for (int i = 0; i < kTextures; ++i) {
       // From half of the file's bytes on; a smaller one may be all that there is.
       const double bytes = 0.5 * whole * share(i, kTextures) / kMost;
-      const Shrunk shrunk = images.within(static_cast<std::uint64_t>(bytes), false);
-      if (!ladders.textures.empty() && shrunk.bytes >= ladders.textures.back().bytes) continue;
-      const Image8 image = decode_image(shrunk.model.images[0].bytes);
-      add_texture(ladders, image, shrunk.bytes,
+      const std::size_t way = images.within(static_cast<std::uint64_t>(bytes), false)[0];
+      if (!ladders.textures.empty() && images.bytes(0, way) >= ladders.textures.back().bytes) continue;
+      const Image8 image = decode_image(images.stored(0, way).bytes);
+      add_texture(ladders, image, images.bytes(0, way),
                   static_cast<double>(image.width) * image.height /
                       (static_cast<double>(scene_.images[image_of(scene_)].map->width()) *
                        scene_.images[image_of(scene_)].map->height()));
@@ -413,6 +415,23 @@ class Analysis {
     fmt::print("\n");
   }
 
+  /// Pairs of about the bytes of the best one within `part` of the largest: this one, and those that give
+  /// most to the texture and to the mesh (figure 6 of the paper).
+  std::array<std::pair<std::string, JointPoint>, 3> trades(double part) const {
+    const double most = part * static_cast<double>(all_.front().bytes);
+    const auto best = std::ranges::min_element(all_, {}, [&](const JointPoint& p) {
+      return static_cast<double>(p.bytes) <= most ? p.loss : std::numeric_limits<double>::max();
+    });
+    const auto most_for = [&](bool is_texture) {
+      return *std::ranges::max_element(all_, {}, [&](const JointPoint& p) -> std::uint64_t {
+        const double bytes = static_cast<double>(p.bytes) / static_cast<double>(best->bytes);
+        if (bytes < 0.95 || bytes > 1.05) return 0;
+        return is_texture ? ladders_.textures[p.rungs[1]].bytes : ladders_.meshes[p.rungs[0]].bytes;
+      });
+    };
+    return {{{"fine-texture", most_for(true)}, {"best", *best}, {"fine-mesh", most_for(false)}}};
+  }
+
   void write_points(std::ofstream& out, const std::string& land) const {
     for (const JointPoint& p : all_) {
       std::string passed;
@@ -471,6 +490,19 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Draws three pairs of about an eighth of the largest one's bytes, and says what they are.
+void write_trades(Experiment& experiment, const Ladders& ladders, const Analysis& analysis,
+                  const std::string& stem) {
+  for (const auto& [kind, pair] : analysis.trades(0.125)) {
+    const MeshRung& mesh = ladders.meshes[pair.rungs[0]];
+    const TextureRung& texture = ladders.textures[pair.rungs[1]];
+    write_image(experiment.picture(mesh, texture), fmt::format("{} {}.webp", stem, kind), true);
+    std::ofstream(fmt::format("{} {}.json", stem, kind))
+        << fmt::format(R"({{"mesh_bytes": {}, "texture_bytes": {}, "psnr": {:.4f}}})", mesh.bytes,
+                       texture.bytes, psnr(pair.loss));
+  }
+}
+
 void measure_land(const Land& land, std::ofstream& points, const std::string& views, Context& context) {
   Experiment experiment(land, context);
   fmt::print("### {}\n\n{} x {} points, {:.0f} % of them in the picture.\n\n", land.name, land.field.columns,
@@ -505,6 +537,7 @@ void measure_land(const Land& land, std::ofstream& points, const std::string& vi
       const std::string stem = views + "/" + land.name + (is_own ? " own" : " paper");
       write_image(experiment.picture(fine, sharp), stem + " large.png", true);
       write_image(experiment.picture(coarse, blurred), stem + " small.png", true);
+      if (!is_own) write_trades(experiment, ladders, analysis, views + "/" + land.name);
     }
     std::fflush(stdout);
   }
@@ -528,7 +561,7 @@ int run(int count, char** arguments) {
     if (!file.empty()) {
       points.open(file);
       points << "land,ladders,mesh,texture,mesh_bytes,texture_bytes,bytes,mse,psnr,hull,prune_step,prune_"
-                "byte,grow\n";
+                "byte,prune_ahead,grow\n";
     }
     Context context;
     for (const Land& land : lands(context)) measure_land(land, points, views, context);

@@ -1,4 +1,5 @@
 #include "fovea/simplify/view_cost.h"
+#include "fovea/simplify/local_blocks.h"
 
 #include <gtest/gtest.h>
 

@@ -23,15 +23,6 @@ enum class ViewMeasure {
   image,    ///< The colour of each pixel, against the original's.
 };
 
-/// |x − y|² over the channels, 0 … 255; between a pixel with and one without a surface 8128 more.
-inline std::int32_t squared_difference(PackedColor x, PackedColor y) {
-  const auto d = [&](int shift) {
-    return static_cast<std::int32_t>(x >> shift & 255) - static_cast<std::int32_t>(y >> shift & 255);
-  };
-  const std::int32_t r = d(0), g = d(8), b = d(16), coverage = d(24);
-  return r * r + g * g + b * b + coverage * coverage / 8;
-}
-
 /// A sum over views that may stop before the last.
 struct PartialChange {
   std::int64_t sum = 0;     ///< In units of the measure, see ViewCost::amount.
