@@ -33,13 +33,13 @@ ${table(['distance', 'vertices of the other:', 'that changed by more than 0.0001
 
 /** Figures 4.2 and 4.3: an arm by saliency of one pose and of several. */
 function figure43(shop) {
-  const arm = shop.sample('arm'), bent = ['--animation', '0', '--time', '0.5'];
+  const arm = shop.sample('arm'), bent = ['--animation', '0', '--time', '1'];
   const ways = [
     ['quadrics', []],
     ['one pose', ['--saliency', 'munaretti', '--saliency-weighting', 'munaretti']],
     ['several poses', ['--saliency', 'munaretti', '--saliency-weighting', 'munaretti', '--key-poses', '8']],
   ];
-  const results = ways.map(([, options], i) => shop.simplified(arm, `arm-${i}.glb`, '--ratio', '0.04', '--metric', 'quadric', ...options));
+  const results = ways.map(([, options], i) => shop.simplified(arm, `arm-${i}.glb`, '--ratio', '0.02', '--metric', 'quadric', ...options));
   const look = ['--elevation', '15', '--view-size', '260', ...bent];
   const pictures = (pass) => results.map((model, i) => shop.draw(model, `munaretti-4-3-${pass}-${i}`, ...look, '--pass', pass));
   const judged = [[], bent].map((pose) => shop.compared(arm, results, ...pose));
@@ -72,7 +72,7 @@ const methods = ['salient', 'propagative', 'kmeans'];
 
 /** Figures 7.7 to 7.11: three ways to clusters. */
 function figure77(shop) {
-  const scans = [['armadillo', 45, ['--view-count', '6', '--view', '4']], ['dragon', 45, []], ['bunny', 10, []], ['nefertiti', 30, []]];
+  const scans = [['armadillo', 45, []], ['dragon', 45, []], ['bunny', 10, []], ['nefertiti', 30, []]];
   const found = scans.flatMap(([name, clusters, look]) => shop.real(`scans/${name}.ply`).map(([, file]) => [name, file, clusters, look]));
   if (found.length < scans.length) return undefined;
   return table(['', ...methods], found.map(([name, file, clusters, look]) => [`${name}, ${clusters} clusters`, ...methods.map((method) => {

@@ -69,6 +69,9 @@ export class Workshop {
 /** How models are drawn unless said otherwise: once, from the front, a little from above. */
 const kView = ['--views', 'orbit', '--view-count', '1', '--elevation', '10', '--view-size', '200', '--samples', '3', '--background', '#ffffff'];
 
+/** And from where a model that looks away is better seen. */
+export const kFromTheSide = ['--view-count', '6', '--view', '3'];
+
 /** A Markdown table; columns of numbers end with a colon. */
 export function table(head, rows) {
   const line = (cells) => `| ${cells.join(' | ')} |`;

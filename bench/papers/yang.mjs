@@ -1,6 +1,6 @@
 // Yang, Li, Wang, Xu: Visual saliency guided textured model simplification (2016).
 import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { bold, count, fixed, signed, table } from './workshop.mjs';
+import { bold, count, fixed, kFromTheSide, signed, table } from './workshop.mjs';
 
 // Table 2 of the paper: PSNR and MS-SSIM of its three ways, and the colours of the texture.
 const paper = [
@@ -81,7 +81,6 @@ function figure12(shop) {
 function figure4(shop) {
   const scans = shop.real('scans/armadillo.ply', 'scans/nefertiti.ply');
   if (scans.length < 2) return undefined;
-  const turned = { armadillo: ['--view-count', '6', '--view', '4'], nefertiti: [] };
   return table(['', 'scan', 'mean curvature', 'Lee et al.', 'Yang et al., geometry', 'Fovea, default'], scans.map(([name, file]) => {
     const map = (picture, absolute, ...options) => {
       const field = shop.file(`${name}-${picture}.csv`);
@@ -91,9 +90,9 @@ function figure4(shop) {
       const sizes = values.map((v) => (absolute ? Math.abs(v) : Number(v)));
       const most = [...sizes].sort((a, b) => a - b)[Math.floor(0.99 * sizes.length)];
       writeFileSync(field, [head, ...sizes.map((v) => Math.min(v, most))].join('\n'));
-      return shop.draw(file, `yang-4-${name}-${picture}`, ...turned[name], '--pass', 'field', '--field', field);
+      return shop.draw(file, `yang-4-${name}-${picture}`, '--pass', 'field', '--field', field);
     };
-    return [name, shop.draw(file, `yang-4-${name}`, ...turned[name]),
+    return [name, shop.draw(file, `yang-4-${name}`),
       map('curvature', true, '--preset', 'lee', '--map', 'curvature'), map('lee', false, '--preset', 'lee'),
       map('yang', false, '--preset', 'yang', '--map', 'geometry'), map('fovea', false)];
   }));
@@ -104,13 +103,14 @@ function figure8(shop) {
   const models = [['vase', shop.sample('vase')], ...shop.real('textured/spot/spot.obj', 'textured/AntiqueCameraBody.glb', 'textured/WaterBottle.glb')];
   if (models.length < 4) return undefined;
   return table(['', 'model', 'mesh', 'geometry', 'colour', 'entropy', 'all'], models.map(([name, file]) => {
+    const look = ['--view-size', '150', ...(name === 'spot' ? kFromTheSide : [])];
     const map = (what) => {
       const field = shop.file(`${name}-${what}.csv`);
       shop.fovea('saliency', file, '-o', field, '--force', '--preset', 'yang', '--map', what);
-      return shop.draw(file, `yang-8-${name}-${what}`, '--view-size', '150', '--pass', 'field', '--field', field);
+      return shop.draw(file, `yang-8-${name}-${what}`, ...look, '--pass', 'field', '--field', field);
     };
-    return [name, shop.draw(file, `yang-8-${name}`, '--view-size', '150', '--pass', 'base-color'),
-      shop.draw(file, `yang-8-${name}-mesh`, '--view-size', '150', '--pass', 'normal'),
+    return [name, shop.draw(file, `yang-8-${name}`, ...look, '--pass', 'base-color'),
+      shop.draw(file, `yang-8-${name}-mesh`, ...look, '--pass', 'normal'),
       ...['geometry', 'texture-color', 'texture-entropy', 'saliency'].map(map)];
   }));
 }
@@ -127,7 +127,7 @@ function images(file) {
 
 /** Figure 10: relaxation alone against relaxation and regularisation. */
 function figure10(shop) {
-  const models = [['vase', shop.sample('vase')], ...shop.real('textured/spot/spot.obj')];
+  const models = [['vase', shop.sample('vase')], ...shop.real('textured/BoomBox.glb')];
   if (models.length < 2) return undefined;
   const rows = [], scores = [];
   for (const [name, file] of models) {

@@ -31,9 +31,9 @@ void tour(const std::filesystem::path& input, const std::filesystem::path& folde
 
   // [read]
   const fovea::Model model = fovea::read_model(input, {}, context);
-  for (const fovea::TriMesh& mesh : model.meshes)
-    std::cout << mesh.name << ": " << mesh.face_count() << " triangles, " << mesh.vertex_count()
-              << " vertices\n";
+  for (const fovea::Mesh& mesh : model.meshes)
+    std::cout << mesh.name << ": " << mesh.surface.face_count() << " triangles, "
+              << mesh.surface.vertex_count() << " vertices\n";
   // [/read]
 
   // [simplify]
@@ -53,7 +53,7 @@ void tour(const std::filesystem::path& input, const std::filesystem::path& folde
   // [importance]
   const fovea::ModelSaliency seen = fovea::model_saliency(model, {}, context);
   fovea::Importance importance = fovea::salient_importance(model, seen.saliency, {}, context);
-  importance[0].assign(importance[0].size(), 2.0F);  // or what you know yourself; infinity locks a vertex
+  for (float& weight : importance[0].values()) weight *= 2;  // or what you know yourself; infinity locks
   const fovea::Model salient = fovea::simplify(model, options, importance, context).model;
   // [/importance]
 
