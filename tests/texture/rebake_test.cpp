@@ -131,6 +131,76 @@ TEST(Rebake, NormalsTakeTheOldMapAlong) {
   EXPECT_NEAR((half.at(16, 3)[1] - 127.5) / (half.at(16, 3)[2] - 127.5), slope / 2, 0.02);
 }
 
+/// Two of the squares in one place and in one image, side by side there: the bumps of the second go the other
+/// way.
+Squares two_meshes() {
+  Squares s = squares(1);
+  for (Model* model : {&s.original, &s.simplified}) {
+    Mesh second = model->meshes[0];
+    for (Vec3f& p : second.surface.positions) p.z = -p.z;
+    AttributeLayer& normals = *second.surface.find(Semantic::normal);
+    for (std::size_t i = 0; i < normals.values.size(); ++i) {
+      if (i % 3 != 2) normals.values[i] = -normals.values[i];
+    }
+    for (Mesh* mesh : {&model->meshes[0], &second}) {
+      AttributeLayer& uv = *mesh->surface.find(Semantic::uv);
+      for (std::size_t i = 0; i < uv.values.size(); i += 2)
+        uv.values[i] = 0.5f * uv.values[i] + (mesh == &second ? 0.5f : 0);
+    }
+    model->meshes.push_back(std::move(second));
+    Node node = model->nodes[0];
+    node.mesh = 1;
+    model->nodes.push_back(node);
+    model->scenes[0].nodes.push_back(1);
+  }
+  return s;
+}
+
+TEST(Rebake, EachMeshLooksAtItsOwnSurface) {
+  const Squares s = two_meshes();
+  Atlas before = find_atlases(s.original).at(0), after = find_atlases(s.simplified).at(0);
+  AtlasRebake rebake(s.original, before, s.simplified, after);
+  const Image8 map = rebake.baked_normals(nullptr, 1, 128, 64, Context());
+  for (int y = 2; y < 62; y += 5) {
+    for (int x = 8; x < 56; x += 3) {
+      const Vec3d n = normal_at(((x + 0.5) / 64 - 0.1) / 0.8, (y + 0.5) / 64);
+      EXPECT_NEAR(map.at(x, y)[0] / 127.5 - 1, n.x, 0.015) << x << ' ' << y;
+      EXPECT_NEAR(map.at(x, y)[1] / 127.5 - 1, -n.y, 0.015) << x << ' ' << y;
+      EXPECT_NEAR(map.at(x + 64, y)[0] / 127.5 - 1, -n.x, 0.015) << x << ' ' << y;
+      EXPECT_NEAR(map.at(x + 64, y)[1] / 127.5 - 1, n.y, 0.015) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(Rebake, ImagesOfVariantsAreBakedToo) {
+  Squares s = squares(1);
+  for (Model* model : {&s.original, &s.simplified}) {
+    Image8 other = decode_image(model->images[0].bytes);
+    for (std::uint8_t& value : other.pixels) value = static_cast<std::uint8_t>(255 - value);
+    model->images.push_back(model->images[0]);
+    model->images[1].bytes = encode_png(other);
+    model->textures.push_back({1, -1, "", ""});
+    model->materials.push_back(model->materials[0]);
+    model->materials[1].base_color = TextureRef{1, 0, {}};
+    model->meshes[0].surface.parts[0].json =
+        R"({"extensions": {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}})";
+  }
+  ShrinkOptions options = rebake_of(s.original);
+  options.output.format = TextureOutput::png;
+  options.output.psnr_db = 100;
+  options.scale = 0.5;
+  const Shrunk found = shrink(s.simplified, options);
+  const Image8 own = decode_image(found.model.images[0].bytes),
+               other = decode_image(found.model.images[1].bytes);
+  ASSERT_EQ(other.width, own.width);
+  ASSERT_GT(found.atlases.at(0).rebaked_texels, 0.5);
+  // The variant's image is the negative of the other one, and stays so to rounding.
+  int off = 0;
+  for (std::size_t i = 0; i < own.pixels.size(); ++i)
+    off = std::max(off, std::abs(own.pixels[i] + other.pixels[i] - 255));
+  EXPECT_LE(off, 16) << "averages in linear light of a negative differ by that much";
+}
+
 TEST(Rebake, WhatIsBakedSharesTheBytes) {
   // A new normal map, which takes what detail it has, and a picture.
   const Squares s = squares(1);
