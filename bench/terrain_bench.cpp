@@ -496,7 +496,7 @@ void write_trades(Experiment& experiment, const Ladders& ladders, const Analysis
   for (const auto& [kind, pair] : analysis.trades(0.125)) {
     const MeshRung& mesh = ladders.meshes[pair.rungs[0]];
     const TextureRung& texture = ladders.textures[pair.rungs[1]];
-    write_image(experiment.picture(mesh, texture), fmt::format("{} {}.webp", stem, kind), true);
+    write_image(experiment.picture(mesh, texture), fmt::format("{} {}.jpg", stem, kind), true);
     std::ofstream(fmt::format("{} {}.json", stem, kind))
         << fmt::format(R"({{"mesh_bytes": {}, "texture_bytes": {}, "psnr": {:.4f}}})", mesh.bytes,
                        texture.bytes, psnr(pair.loss));

@@ -115,8 +115,8 @@ function figure6(shop) {
       const file = shop.file(`${land} ${kind}.json`);
       if (!existsSync(file)) throw new Error(`terrain_bench wrote no ${file}`);
       const pair = JSON.parse(readFileSync(file, 'utf8')), picture = `horbelt-6-${stem(land)}-${kind}`;
-      writeFileSync(`${shop.images}/${picture}.webp`, readFileSync(shop.file(`${land} ${kind}.webp`)));
-      return `${shop.shown(picture)}<br>mesh ${kilobytes(Math.round(pair.mesh_bytes / 100) * 100)}, texture ${kilobytes(Math.round(pair.texture_bytes / 100) * 100)}: ${fixed(pair.psnr)} dB`;
+      writeFileSync(`${shop.images}/${picture}.jpg`, readFileSync(shop.file(`${land} ${kind}.jpg`)));
+      return `${shop.shown(picture, 'jpg')}<br>mesh ${kilobytes(Math.round(pair.mesh_bytes / 100) * 100)}, texture ${kilobytes(Math.round(pair.texture_bytes / 100) * 100)}: ${fixed(pair.psnr)} dB`;
     });
     rows.push([land, ...shown]);
   }
