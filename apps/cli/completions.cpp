@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/base/error.h"
+#include "help.h"
 #include "verb.h"
 
 namespace fovea::cli {
@@ -31,9 +32,10 @@ std::string first_sentence(const std::string& help) {
 }
 
 Word word_of(const Option& option, const std::string& default_text) {
-  const bool is_taken_back = option.is_flag() && default_text == "true";
-  Word word{
-      (is_taken_back ? "--no-" : "--") + option.name, first_sentence(option.help), !option.is_flag(), {}};
+  Word word{(is_taken_back(option, default_text) ? "--no-" : "--") + option.name,
+            first_sentence(meaning(option, default_text)),
+            !option.is_flag(),
+            {}};
   if (const auto* named = std::get_if<Option::Choice>(&option.value)) {
     word.choices = named->names;
     word.has_value = named->alone.empty();

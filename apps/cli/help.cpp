@@ -42,7 +42,7 @@ bool is_optional(const Option& option) {
 
 std::string flag_text(const Option& option, const std::string& default_text) {
   const std::string shorter = short_flag(option.name);
-  const std::string negation = option.is_flag() && default_text == "true" ? "no-" : "";
+  const std::string negation = is_taken_back(option, default_text) ? "no-" : "";
   const std::string value = value_name(option);
   return (shorter.empty() ? "" : shorter + ", ") + "--" + negation + option.name +
          (value.empty() ? "" : " " + value);
@@ -118,13 +118,25 @@ std::string markdown(Verb& verb) {
     for (std::size_t i = 0; i < group.options.size(); ++i) {
       const Option& option = group.options[i];
       text += fmt::format("| `{}` | {} | {} |\n", table_cell(flag_text(option, group.defaults[i])),
-                          table_cell(details(option, group.defaults[i])), table_cell(option.help));
+                          table_cell(details(option, group.defaults[i])),
+                          table_cell(meaning(option, group.defaults[i])));
     }
   }
   return text;
 }
 
 }  // namespace
+
+bool is_taken_back(const Option& option, const std::string& default_text) {
+  return option.is_flag() && default_text == "true";
+}
+
+std::string meaning(const Option& option, const std::string& default_text) {
+  if (!is_taken_back(option, default_text)) return option.help;
+  std::string text = option.help;
+  text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return "Do not " + text;
+}
 
 std::string main_help() {
   std::string text = "fovea " FOVEA_VERSION
@@ -157,7 +169,7 @@ std::string verb_help(Verb& verb) {
     for (std::size_t i = 0; i < group.options.size(); ++i) {
       const std::string more = details(group.options[i], group.defaults[i]);
       text += entry(flag_text(group.options[i], group.defaults[i]),
-                    group.options[i].help + (more.empty() ? "" : " [" + more + "]"));
+                    meaning(group.options[i], group.defaults[i]) + (more.empty() ? "" : " [" + more + "]"));
     }
   }
   text += entry("-h, --help", "Show this.");

@@ -201,8 +201,7 @@ class Lods : public Verb {
   OptionList error_options() {
     OptionList list = describe(options_);
     std::erase_if(list, [](const Option& o) { return o.name == "levels" || o.name == "ratio"; });
-    list.push_back({"pictures",
-                    "Compare pictures of each level with the original's; --no-pictures is quicker.",
+    list.push_back({"pictures", "Compare pictures of each level with the original's, which takes longer.",
                     &options_.pictures, ""});
     return list;
   }
