@@ -123,4 +123,10 @@ function figure6(shop) {
   return table(['', 'most for the texture', 'the best', 'most for the mesh'], rows);
 }
 
-export default { 'horbelt-figure-4': figure4, 'horbelt-figure-5': figure5, 'horbelt-path': path, 'horbelt-figure-6': figure6 };
+/** Without real land the page would lose that of Puget Sound. */
+const onBothLands = (part) => (shop) => (shop.data ? part(shop) : undefined);
+
+export default {
+  'horbelt-figure-4': onBothLands(figure4), 'horbelt-figure-5': onBothLands(figure5), 'horbelt-path': onBothLands(path),
+  'horbelt-figure-6': onBothLands(figure6),
+};
