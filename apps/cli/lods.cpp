@@ -10,6 +10,7 @@
 #include "fovea/base/text.h"
 #include "fovea/budget/fit.h"
 #include "fovea/io/extension.h"
+#include "fovea/io/gltf_write.h"
 #include "fovea/io/read.h"
 #include "fovea/io/write.h"
 #include "fovea/lod/levels_file.h"
@@ -73,6 +74,8 @@ class Lods : public Verb {
           "Three levels of so many bytes, triangles and texels as they look best."},
          {"fovea lods tree.glb -o lods --distances 20,50,200 --fov 70 --height 1440 --pixel-error 2",
           "The same by distances, on another screen."},
+         {"fovea lods rock.glb -o rock-lods.glb --share-vertices",
+          "All levels from one list of vertices, of which each uses a beginning."},
          {"fovea lods fox.glb -o lods --name 'LOD{i}_{name}' --textures keep",
           "Names as Unreal has them; every level has all texels."},
          {"fovea lods bunny.ply -o bunny.fovea --triangles 500",
@@ -112,6 +115,7 @@ class Lods : public Verb {
       importance = session.phase("importance", [&] { return load_importance(input); });
     if (has_all_levels()) return write_levels(session, input, importance);
     if (input.levels) options_.record = &input.levels->record;
+    if (share_vertices_) share_vertices(input);
     if (rebake_ == Rebake::on) options_.textures.rebake.original = &input.model;
     if (!options_.bytes.empty()) {
       const std::optional<std::uint64_t> smallest =
@@ -141,6 +145,17 @@ class Lods : public Verb {
   }
 
  private:
+  /// Levels keep to the vertices of the original.
+  void share_vertices(const Input& input) {
+    options_.simplify.placement = Placement::half_edge;
+    options_.textures.moves = TexelMoves::none;
+    if (!input.levels) return;
+    const auto moves = [](const CollapseStep& step) { return step.moved; };
+    if (std::ranges::any_of(input.levels->record.steps, moves))
+      throw Error(ErrorKind::usage, "the steps of this file move vertices, which levels cannot share then",
+                  input_, "make it with --placement half-edge, or leave out --share-vertices");
+  }
+
   OptionList level_options() {
     OptionList list = describe(options_);
     std::erase_if(list, [](const Option& o) { return o.name != "levels" && o.name != "ratio"; });
@@ -212,7 +227,11 @@ class Lods : public Verb {
          "folder or file"},
         {"name", "Name of a level's file: {name} is the model's, {i} the level's number.", &name_, "pattern"},
         {"vanish", "The coverage below which not even the last level is shown; 0 always shows it.", &vanish_,
-         "", 0, 1}};
+         "", 0, 1},
+        {"share-vertices",
+         "Let all levels of a .glb be made of the same vertices, so that they differ in indices alone; edges "
+         "then collapse to one of their ends (--placement half-edge), and texels do not move (--warp none).",
+         &share_vertices_, ""}};
   }
 
   void declare_needs(Arguments& arguments) {
@@ -224,10 +243,14 @@ class Lods : public Verb {
                       return textures_ == LevelTextures::follow;
                     }});
     arguments.need({{"name", "bytes"}, "a folder as output", [this] { return !is_one_file(); }});
-    arguments.need({{"vanish"}, "a .glb as output", [this] { return is_one_file(); }});
-    std::vector<std::string> of_chains{"levels",         "ratio",        "coverage", "distances",
-                                       "textures",       "rebake",       "warp",     "vanish",
-                                       "texture-format", "texture-psnr", "bytes"};
+    arguments.need({{"vanish", "share-vertices"}, "a .glb as output", [this] { return is_one_file(); }});
+    arguments.need({{"placement", "warp", "rebake"},
+                    "levels with vertices of their own",
+                    [this] { return !share_vertices_; },
+                    "leave it out, or --share-vertices"});
+    std::vector<std::string> of_chains{"levels",         "ratio",          "coverage",     "distances",
+                                       "textures",       "rebake",         "warp",         "vanish",
+                                       "share-vertices", "texture-format", "texture-psnr", "bytes"};
     for (const Option& option : describe_screen()) of_chains.push_back(option.name);
     for (const Option& option : error_options()) of_chains.push_back(option.name);
     arguments.need({of_chains, "a chain, not all levels", [this] { return !has_all_levels(); }});
@@ -417,7 +440,11 @@ class Lods : public Verb {
   std::vector<std::string> write(const LodChain& chain, std::vector<LodFile>& files,
                                  const std::string& sidecar, Context& context) const {
     if (is_one_file()) {
-      write_model(with_lods(chain, vanish_, context), output_, write_options_, context);
+      std::vector<int> level_of;
+      const Model all = with_lods(chain, vanish_, context, &level_of);
+      if (!share_vertices_) level_of.clear();
+      const GltfOutput file = write_gltf(all, true, stem(), write_options_, context, level_of);
+      write_files(output_, file.files, write_options_.force);
       return {output_};
     }
     // Named from the folder's own, which is made with them or not at all.
@@ -457,6 +484,7 @@ class Lods : public Verb {
   std::string triangles_, coverages_, distances_, bytes_;
   std::string name_ = "{name}_LOD{i}";
   double vanish_ = 0;
+  bool share_vertices_ = false;
   bool allow_miss_ = false;
   LodsOutput as_ = LodsOutput::by_extension;
   LevelTextures textures_ = LevelTextures::follow;

@@ -162,6 +162,29 @@ TEST_F(LodsVerb, OptionsThatDoNothingAreRefused) {
   EXPECT_THAT(named.err, HasSubstr("a folder"));
 }
 
+TEST_F(LodsVerb, LevelsShareTheirVertices) {
+  const Outcome own = quick({grid_, "-o", out("own.glb"), "--levels", "3", "--placement", "half-edge"});
+  const Outcome shared = quick({grid_, "-o", out("shared.glb"), "--levels", "3", "--share-vertices"});
+  ASSERT_EQ(shared.code, 0) << shared.err;
+  EXPECT_LT(std::filesystem::file_size(out("shared.glb")), std::filesystem::file_size(out("own.glb")));
+  EXPECT_EQ(counts(model(out("shared.glb"))).triangles, counts(model(out("own.glb"))).triangles);
+  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+    words.insert(words.begin(), {grid_, "--share-vertices"});
+    const Outcome outcome = lods(words);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(why));
+  };
+  refused({"-o", out("folder")}, "a .glb as output");
+  refused({"-o", out("grid.fovea")}, "a chain, not all levels");
+  refused({"-o", out("a.glb"), "--placement", "optimal"}, "levels with vertices of their own");
+  refused({"-o", out("a.glb"), "--warp", "saliency"}, "levels with vertices of their own");
+  // Steps that are known must leave vertices where they are.
+  ASSERT_EQ(lods({grid_, "-o", out("moving.fovea"), "--triangles", "40"}).code, 0);
+  const Outcome moving = lods({out("moving.fovea"), "-o", out("b.glb"), "--share-vertices", "--no-pictures"});
+  EXPECT_EQ(moving.code, 2);
+  EXPECT_THAT(moving.err, HasSubstr("half-edge"));
+}
+
 TEST_F(LodsVerb, WhatIsThereStaysUnlessForced) {
   fs::create_directory(out("lods"));
   folder_.write("lods/grid_LOD1.glb", "mine");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "fovea/lod/cut.h"
 #include "fovea/lod/live_level.h"
 #include "lod/leveled.h"
+#include "support/any_model.h"
 #include "support/meshes.h"
 
 namespace fovea {
@@ -104,6 +106,55 @@ TEST(Contraction, GivesWhatTheRecordGives) {
   for (const Placement placement : {Placement::optimal, Placement::half_edge}) {
     for (const auto& [name, mesh] : test::all_families())
       expect_same_levels(leveled(test::model_of(mesh), 0, 2, placement), name);
+  }
+}
+
+/// How many corners of the original's triangles, be they there or not, are not led to where the first `count`
+/// steps put their vertex.
+std::size_t strays(const Leveled& model, const VertexHierarchy& hierarchy, std::size_t count) {
+  std::vector<std::vector<std::uint32_t>> now;
+  std::vector<std::vector<Vec3f>> positions;
+  for (const Mesh& mesh : model.original.meshes) {
+    now.emplace_back(mesh.surface.vertex_count());
+    std::iota(now.back().begin(), now.back().end(), 0u);
+    positions.push_back(mesh.surface.positions);
+  }
+  const CollapseRecord& record = model.levels.record;
+  for (std::size_t s = 0; s < count; ++s) {
+    const CollapseStep& step = record.steps[s];
+    if (step.kind != StepKind::collapse) continue;
+    for (std::uint32_t& v : now[step.mesh]) v = v == step.removed.value ? step.kept.value : v;
+    if (step.moved) positions[step.mesh][step.kept.index()] = step.position;
+  }
+  std::size_t strays = 0;
+  for (const LevelPart& part : hierarchy.parts) {
+    const TriMesh& mesh = model.original.meshes[part.mesh].surface;
+    std::size_t f = part.first_face;
+    for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+      if (mesh.face_part[face] != part.part) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::uint32_t node = hierarchy.corners[f][k];
+        while (hierarchy.step[node] != kInvalid && hierarchy.step[node] < count)
+          node = hierarchy.parent[node];
+        const Vec3f there = hierarchy.vertices[part.mesh].positions[hierarchy.vertex[node]];
+        strays += there != positions[part.mesh][now[part.mesh][mesh.triangles[face][k].index()]];
+      }
+      ++f;
+    }
+  }
+  return strays;
+}
+
+TEST(Contraction, CornersOfTrianglesThatAreGoneFollow) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    test::Choices choices(seed);
+    const Placement placement = seed % 2 == 0 ? Placement::half_edge : Placement::optimal;
+    const Leveled model = leveled(test::any_model(choices), 0, 1, placement);
+    Context context;
+    const VertexHierarchy hierarchy = make_vertex_hierarchy(model.original, model.levels, context);
+    const std::size_t steps = model.levels.step_count();
+    // The last vertex of a piece moves after its last triangle has gone.
+    for (std::size_t i = 0; i <= 8; ++i) EXPECT_EQ(strays(model, hierarchy, i * steps / 8), 0u) << seed;
   }
 }
 

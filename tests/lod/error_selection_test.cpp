@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <set>
@@ -12,11 +13,15 @@
 #include <vector>
 
 #include "fovea/base/error.h"
+#include "fovea/io/read.h"
 #include "fovea/lod/contraction.h"
 #include "fovea/lod/cut.h"
+#include "fovea/lod/level_cracks.h"
 #include "fovea/surface/half_edges.h"
 #include "lod/leveled.h"
+#include "support/any_model.h"
 #include "support/meshes.h"
+#include "support/reading.h"
 
 namespace fovea {
 namespace {
@@ -118,6 +123,48 @@ TEST(ErrorSelection, NoCracksAroundAnOrbit) {
     EXPECT_EQ(odd_edges(it.corners(cut)), 0u) << i;
   }
   EXPECT_TRUE(folds_are_possible);  // or the test says nothing
+}
+
+/// Cracks of all levels along an orbit.
+std::size_t cracks_around(const Leveled& model, std::initializer_list<double> shares) {
+  Context context;
+  const VertexHierarchy hierarchy = make_vertex_hierarchy(model.original, model.levels, context);
+  const CrackFinder finder(hierarchy);
+  ErrorSelection selection(model.original, model.levels);
+  const Box box = bounds(model.original);
+  std::size_t cracks = 0;
+  for (const double share : shares) {
+    LevelBudget budget;
+    budget.triangles = static_cast<std::uint64_t>(share * static_cast<double>(model.levels.triangles));
+    for (int i = 0; i < 12; ++i) {
+      const double angle = i * 0.55, away = (0.3 + 0.1 * i) * box.diagonal();
+      const Vec3d eye = box.center() + Vec3d(std::cos(angle), 0.3, std::sin(angle)) * away;
+      selection.begin(camera_from(eye, box.center()), budget);
+      selection.advance(selection.total_work());
+      cracks += finder.count(selection.taken());
+    }
+  }
+  return cracks;
+}
+
+// Surfaces in any disorder, sheets that pass through each other or lie on each other among them.
+TEST(ErrorSelection, NoCracksInAnyModel) {
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    for (const Placement placement : {Placement::optimal, Placement::half_edge}) {
+      test::Choices choices(seed);
+      const Leveled model = leveled(test::any_model(choices), 0, 1, placement);
+      if (bounds(model.original).empty()) continue;
+      EXPECT_EQ(cracks_around(model, {0.1, 0.35, 0.6}), 0u) << seed;
+    }
+  }
+}
+
+TEST(ErrorSelection, NoCracksInARealModelOfManySheets) {
+  const auto path = test::corpus_file("textured/AcousticGuitar.glb");
+  if (!path) GTEST_SKIP() << "FOVEA_DATA is not set";
+  Context context;
+  Model guitar = read_model(*path, {}, context);
+  EXPECT_EQ(cracks_around(leveled(std::move(guitar), 100), {0.02, 0.05, 0.35}), 0u);
 }
 
 TEST(ErrorSelection, WhatIsAllInSightIsACut) {

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "fovea/io/gltf_read.h"
 #include "fovea/io/gltf_write.h"
 #include "fovea/surface/pose.h"
 #include "lod_chains.h"
+#include "support/corner_soup.h"
 #include "support/meshes.h"
 #include "support/reading.h"
 #include "support/textured.h"
@@ -73,6 +78,85 @@ TEST(LodGltf, TheNodeNamesItsLevels) {
   const Json json = written(all);
   EXPECT_EQ(json["extensionsUsed"], Json({"MSFT_lod"}));
   EXPECT_FALSE(json.contains("extensionsRequired"));
+}
+
+/// Of a primitive, as the .gltf's buffer has them.
+std::vector<std::uint32_t> indices_of(const Json& json, const Json& primitive,
+                                      const std::vector<std::byte>& buffer) {
+  const Json& accessor = json["accessors"][primitive["indices"].get<std::size_t>()];
+  const Json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+  const std::size_t size = accessor["componentType"] == 5123 ? 2 : 4;
+  std::vector<std::uint32_t> indices(accessor["count"].get<std::size_t>(), 0);
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    std::memcpy(&indices[i], buffer.data() + view.value("byteOffset", std::size_t{0}) + i * size, size);
+  return indices;
+}
+
+TEST(LodGltf, LevelsMayShareTheirVertices) {
+  for (Model model : {test::textured(test::torus(32, 16), 1), test::model_of(test::two_part_grid(16, 16)),
+                      test::skinned_model(64), test::model_of(test::morph_strip(60))}) {
+    LodChainOptions options = test::quick_chain();
+    options.simplify.placement = Placement::half_edge;
+    options.textures_follow = false;
+    for (Vec3f& p : model.meshes[0].surface.positions) p.z += 0.1f * std::sin(7 * p.x) * std::sin(5 * p.y);
+    const LodChain chain = chain_of(model, options);
+    ASSERT_GE(chain.levels.size(), 3U);
+    Context context;
+    std::vector<int> level_of;
+    const Model all = with_lods(chain, 0, context, &level_of);
+    const GltfOutput output = write_gltf(all, false, "m", {}, context, level_of);
+    const Json json = Json::parse(test::text_of(output.files[0].bytes));
+    const Json& meshes = json["meshes"];
+    ASSERT_EQ(meshes.size(), chain.levels.size());
+    for (std::size_t p = 0; p < meshes[0]["primitives"].size(); ++p) {
+      std::uint32_t before = kInvalid;
+      for (const Json& mesh : meshes) {
+        const Json& primitive = mesh["primitives"][p];
+        EXPECT_EQ(primitive["attributes"], meshes[0]["primitives"][p]["attributes"]);
+        EXPECT_EQ(primitive.value("targets", Json()), meshes[0]["primitives"][p].value("targets", Json()));
+        std::vector<std::uint32_t> indices = indices_of(json, primitive, output.files[1].bytes);
+        std::ranges::sort(indices);
+        EXPECT_LT(indices.back(), before) << "a level uses a beginning";
+        before = indices.back();
+      }
+    }
+    // And each says what it said before.
+    const GltfOutput glb = write_gltf(all, true, "m", {}, context, level_of);
+    const Model again = read_gltf(glb.files[0].bytes, ".", "m.glb", ReadOptions{}, context);
+    for (std::size_t m = 0; m < all.meshes.size(); ++m)
+      EXPECT_EQ(test::corner_soup(again.meshes[m].surface), test::corner_soup(all.meshes[m].surface)) << m;
+    EXPECT_LT(output.bytes.geometry, write_gltf(all, false, "m", {}, context).bytes.geometry);
+  }
+}
+
+TEST(LodGltf, SharedVerticesHaveOneGrid) {
+  LodChainOptions options = test::quick_chain();
+  options.simplify.placement = Placement::half_edge;
+  const LodChain chain = chain_of(test::model_of(test::icosphere(3)), options);
+  Context context;
+  std::vector<int> level_of;
+  const Model all = with_lods(chain, 0, context, &level_of);
+  WriteOptions write;
+  write.quantize = true;
+  write.compression = GeometryCompression::meshopt;
+  const GltfOutput output = write_gltf(all, false, "m", write, context, level_of);
+  const Json json = Json::parse(test::text_of(output.files[0].bytes));
+  for (const Json& mesh : json["meshes"])
+    EXPECT_EQ(mesh["primitives"][0]["attributes"], json["meshes"][0]["primitives"][0]["attributes"]);
+}
+
+TEST(LodGltf, VerticesOfMeshesThatAreNotThereAreRefused) {
+  const Model model = test::model_of({test::cube(), test::tetrahedron()});
+  Context context;
+  for (const std::vector<int>& wrong : {std::vector<int>{-1, 1}, {-1, 2}, {0, -1}})
+    test::expect_error([&] { write_gltf(model, true, "m", {}, context, wrong); }, ErrorKind::usage,
+                       "/meshes/");
+  // Meshes of other attributes keep their own vertices.
+  const std::vector<int> other{-1, 0};
+  const Json json =
+      Json::parse(test::text_of(write_gltf(model, false, "m", {}, context, other).files[0].bytes));
+  EXPECT_NE(json["meshes"][0]["primitives"][0]["attributes"],
+            json["meshes"][1]["primitives"][0]["attributes"]);
 }
 
 TEST(LodGltf, CoverageHasOneMoreAndFalls) {

@@ -5,8 +5,11 @@
 #include <string>
 
 #include "fovea/base/error.h"
+#include "fovea/base/random.h"
 #include "fovea/io/image_codec.h"
+#include "fovea/io/read.h"
 #include "fovea/judge/surface_distance.h"
+#include "fovea/sample/sample.h"
 #include "fovea/surface/pose.h"
 #include "lod_chains.h"
 #include "support/meshes.h"
@@ -116,6 +119,7 @@ TEST(LodChain, LevelsOfCountsComeInWhereTheirErrorIsAPixel) {
 TEST(LodChain, LevelsOfTheScreenAreAsSimpleAsItAllows) {
   const Model model = test::model_of(test::torus(64, 32));
   LodChainOptions options = quick_chain();
+  options.distance_samples = 50000;
   options.coverages = {0.5, 0.2, 0.05};
   const LodChain chain = chain_of(model, options);
   ASSERT_EQ(chain.levels.size(), 4U);
@@ -128,7 +132,7 @@ TEST(LodChain, LevelsOfTheScreenAreAsSimpleAsItAllows) {
         simplified(model, Metric::quadric, static_cast<std::int64_t>(level.triangles * 4 / 5));
     Context context;
     const SurfaceDistance distance = surface_distance(surface_of(model.meshes[0].surface),
-                                                      surface_of(simpler.meshes[0].surface), 2000, context);
+                                                      surface_of(simpler.meshes[0].surface), 50000, context);
     EXPECT_GT(pixels_at(level.distance, distance.hausdorff(), chain.sphere.radius, options.screen), 1) << i;
   }
   LodChainOptions same = quick_chain();
@@ -161,23 +165,76 @@ TEST(LodChain, WhatCannotBeReachedIsToldOnce) {
   EXPECT_EQ(test::told(context, "lod-not-fewer"), 2U);
 }
 
-TEST(LodChain, ErrorsHoldInKeyPoses) {
+Surface posed(const Model& model, const Pose& pose) {
+  Surface all;
+  for (const Instance& instance : instances(model, pose))
+    append(all, model.meshes[instance.mesh].surface, posed_surface(model, pose, instance).positions);
+  return all;
+}
+
+/// At so many moments of all animations that nobody has chosen, but for `slack` that comes of samples.
+void expect_errors_hold(const Model& model, const LodChain& chain, int moments, double slack,
+                        const std::string& name) {
+  Random random(1);
+  for (int i = 0; i < moments; ++i) {
+    const std::size_t animation = random.below(static_cast<std::uint32_t>(model.animations.size()));
+    const double time = random.uniform() * duration_s(model.animations[animation]);
+    const Pose pose = pose_at(model, animation, time);
+    const Surface original = posed(model, pose);
+    for (std::size_t l = 1; l < chain.levels.size(); ++l) {
+      const LodLevel& level = chain.levels[l];
+      Context context;
+      const double error = surface_distance(original, posed(level.model, pose), 2000, context).hausdorff();
+      EXPECT_LE(error, (1 + slack) * level.error.max + 1e-6)
+          << name << ", level " << l << ", animation " << animation << " at " << time;
+    }
+  }
+}
+
+TEST(LodChain, ErrorsHoldInAllPoses) {
+  const Model strip = test::skinned_model(64);
+  expect_errors_hold(strip, chain_of(strip, quick_chain()), 20, 0.05, "strip");
+  Context context;
+  const Model arm = make_sample("arm", 0.1, context);
+  expect_errors_hold(arm, chain_of(arm, quick_chain()), 20, 0.05, "arm");
+}
+
+TEST(LodChain, ErrorsHoldWhileRealModelsMove) {
+  for (const char* name : {"CesiumMan", "Fox", "KayKitKnight", "RiggedFigure", "RecursiveSkeletons"}) {
+    const auto path = test::corpus_file(std::string("animated/") + name + ".glb");
+    if (!path) GTEST_SKIP() << "FOVEA_DATA is not set";
+    Context context;
+    const Model model = read_model(*path, {}, context);
+    expect_errors_hold(model, chain_of(model, quick_chain()), 40, 0, name);
+  }
+}
+
+TEST(LodChain, WhatIsSimpleEnoughForTheScreenIsSoInAllPoses) {
   const Model model = test::skinned_model(64);
   LodChainOptions options = quick_chain();
-  const LodChain posed = chain_of(model, options);
-  for (const LodLevel& level : posed.levels) {
-    for (const double time : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-      const auto surface = [&](const Model& m) {
-        const Pose pose = pose_at(m, 0, time);
-        Surface all;
-        for (const Instance& instance : instances(m, pose))
-          append(all, m.meshes[instance.mesh].surface, posed_surface(m, pose, instance).positions);
-        return all;
-      };
-      Context context;
-      const double error = surface_distance(surface(model), surface(level.model), 2000, context).hausdorff();
-      EXPECT_LE(error, 1.05 * level.error.max + 1e-6) << "at " << time;
-    }
+  options.coverages = {0.5, 0.1};
+  options.screen.height = 200;
+  const LodChain chain = chain_of(model, options);
+  ASSERT_GE(chain.levels.size(), 2U);
+  for (std::size_t l = 1; l < chain.levels.size(); ++l) EXPECT_LE(chain.levels[l].pixels, 1);
+  expect_errors_hold(model, chain, 20, 0.05, "strip");
+}
+
+TEST(LodChain, WithoutKeyPosesErrorsAreThoseAtRest) {
+  const Model model = test::skinned_model(64);
+  LodChainOptions options = quick_chain();
+  const LodChain moved = chain_of(model, options);
+  options.key_poses = 0;
+  const LodChain rest = chain_of(model, options);
+  Context context;
+  const Pose pose = rest_pose(model);
+  ASSERT_GE(rest.levels.size(), 2U);
+  for (std::size_t l = 1; l < rest.levels.size(); ++l) {
+    EXPECT_LE(rest.levels[l].error.max, moved.levels[l].error.max);
+    const SurfaceDistance distance =
+        surface_distance(posed(model, pose), posed(rest.levels[l].model, pose), 2000, context);
+    EXPECT_NEAR(rest.levels[l].error.max, distance.hausdorff(), 1e-6);
+    EXPECT_NEAR(rest.levels[l].error.mean, distance.mean(), 1e-6);
   }
 }
 

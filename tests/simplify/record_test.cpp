@@ -2,8 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <vector>
+
 #include "fovea/base/error.h"
 #include "fovea/simplify/simplify.h"
+#include "support/any_model.h"
 #include "support/by_quadrics.h"
 #include "support/meshes.h"
 
@@ -87,6 +94,46 @@ TEST(Record, SourceVerticesFollowTheCollapses) {
     const Vec3d from(mesh.positions[mesh.source_vertex[i].index()]), to(level.positions[now.index()]);
     EXPECT_LT(length(to - from), 0.7);
   }
+}
+
+/// Whether the triangles that a collapse takes besides those on its edge come in pairs, back to back: then
+/// what is beside them ends where it did.
+bool is_closed(const CollapseRecord& record, std::size_t s, const TriMesh& source,
+               const std::vector<std::uint32_t>& now) {
+  std::map<std::array<std::uint32_t, 2>, int> forward;
+  for (std::size_t i = s > 0 ? record.steps[s - 1].faces_end : 0; i < record.steps[s].faces_end; ++i) {
+    const auto& t = source.triangles[record.removed_faces[i].index()];
+    std::array<std::uint32_t, 3> v{};
+    for (std::size_t k = 0; k < 3; ++k) v[k] = now[t[k].index()];
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = v[k], b = v[(k + 1) % 3];
+      forward[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  }
+  return std::all_of(forward.begin(), forward.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
+TEST(Record, NoCollapseTearsTheSurface) {
+  std::size_t looked_at = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    test::Choices choices(seed);
+    const Model model = test::any_model(choices);
+    const CollapseRecord record = run(model, 0).record;
+    std::vector<std::vector<std::uint32_t>> now;
+    for (const Mesh& mesh : model.meshes) {
+      now.emplace_back(mesh.surface.vertex_count());
+      std::iota(now.back().begin(), now.back().end(), 0u);
+    }
+    for (std::size_t s = 0; s < record.steps.size(); ++s) {
+      const CollapseStep& step = record.steps[s];
+      if (step.kind != StepKind::collapse) continue;
+      for (std::uint32_t& v : now[step.mesh]) v = v == step.removed.value ? step.kept.value : v;
+      EXPECT_TRUE(is_closed(record, s, model.meshes[step.mesh].surface, now[step.mesh])) << seed << " " << s;
+      ++looked_at;
+    }
+  }
+  EXPECT_GT(looked_at, 1000u);
 }
 
 TEST(Record, RefusesMoreStepsThanThereAre) {

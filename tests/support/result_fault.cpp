@@ -199,9 +199,9 @@ void look_at_places(const SimplifyRun& run, std::size_t m, Faults& faults) {
 void look_at_topology(const SimplifyRun& run, std::size_t m, Faults& faults) {
   const TriMesh &before = run.model.meshes[m].surface, &after = run.result.model.meshes[m].surface;
   if (run.options.cull_hidden) return;
-  // Otherwise triangles that come to lie on each other may go.
-  if (!run.options.keep_topology) return;
   faults.expect(odd_edges(after) <= odd_edges(before), "the surface is torn");
+  // Otherwise triangles that come to lie back to back may go, whatever their values.
+  if (!run.options.keep_topology) return;
   for (std::size_t l = 0; l < before.layers.size(); ++l)
     faults.expect(odd_edges(after, after.layers[l]) <= odd_edges(before, before.layers[l]),
                   "a layer is torn");

@@ -23,15 +23,12 @@ struct SimplifyRun {
 /// - it stopped for a reason that holds: the count is reached, the error is within its bound, or all edges
 /// are
 ///   accounted for;
-/// - nothing is torn: no more open edges than before, neither of the surface nor of any layer, unless
-/// triangles
-///   on each other were dropped;
+/// - nothing is torn: the surface has no more edges of one triangle, three, ... than before;
 /// - influences are whole and of the joints there were, normals are unit, tangents have a side, colours are
 ///   within 0 and 1;
 /// - what is locked is where it was, with half-edge placement all is;
-/// - where topology is to be kept nothing is torn: no more open edges than before, neither of the surface nor
-/// of
-///   any layer, and of a manifold as many pieces, handles and holes.
+/// - where topology is to be kept no layer is torn either, and a manifold has as many pieces, handles and
+///   holes.
 std::string fault_of(const SimplifyRun& run);
 
 /// The first difference between two results of the same request; empty if there is none.

@@ -293,6 +293,34 @@ TEST(KeyPoses, CountsOutOfRangeAreRefused) {
     test::expect_error([&] { poses_of(model, count); }, ErrorKind::usage, "", "key-poses");
 }
 
+// --- All of the motion -----------------------------------------------------------------------------------
+
+std::vector<std::string> motion_names(const Model& model, double step_s, std::size_t most = 1000) {
+  std::vector<std::string> names;
+  for (const PoseSource& source : motion_poses(model, step_s, most)) names.push_back(source.name);
+  return names;
+}
+
+TEST(MotionPoses, AreKeysAndWhatIsBetween) {
+  const Model model = bending({0, 1, 1.1F, 2}, {0, 20, 50, 80});
+  EXPECT_EQ(motion_names(model, 0.5),
+            (std::vector<std::string>{"animation 0 at 0 s", "animation 0 at 0.5 s", "animation 0 at 1 s",
+                                      "animation 0 at 1.5 s", "animation 0 at 2 s"}));
+  EXPECT_EQ(motion_names(model, 5).size(), 2u);  // the first and the last
+  const auto poses = motion_poses(model, 0.5, 1000);
+  EXPECT_EQ(poses[1].pose(), pose_at(model, 0, 0.5));
+}
+
+TEST(MotionPoses, AreNoMoreThanAsked) {
+  const Model model = bending({0, 10}, {0, 80});
+  EXPECT_EQ(motion_names(model, 0.01).size(), 1000u);
+  EXPECT_EQ(motion_names(model, 0.01, 7).size(), 7u);
+}
+
+TEST(MotionPoses, OfWhatDoesNotMoveThereAreNone) {
+  EXPECT_TRUE(motion_names(test::model_of(test::cube()), 0.1).empty());
+}
+
 TEST(KeyPoses, OfRealModels) {
   for (const char* name : {"CesiumMan.glb", "Fox.glb", "KayKitKnight.glb", "MorphStressTest.glb"}) {
     const auto path = test::corpus_file(std::string("animated/") + name);

@@ -136,6 +136,8 @@ async function sampleFaults() {
   }
   for (const [suffix, ...options] of [
     ['lods.glb', ...quick],
+    ['lods-shared.glb', ...quick, '--textures', 'keep', '--share-vertices'],
+    ['lods-shared-quantized.glb', ...quick, '--textures', 'keep', '--share-vertices', '--quantize', '--compression', 'meshopt'],
     ['lods-quantized.glb', ...quick, '--textures', 'keep', '--quantize', '--compression', 'meshopt'],
   ]) {
     const output = path.join(outputFolder, `${name}-${suffix}`);

@@ -221,13 +221,13 @@ Json place_attributes(const std::vector<NamedAccessor>& attributes, BufferWriter
 
 }  // namespace
 
-EncodedPart encode_part(SplitPart part, const WriteOptions& options, const Grid* grid, Context& context,
-                        const std::string& place) {
+EncodedPart encode_part(SplitPart part, bool ordered, const WriteOptions& options, const Grid* grid,
+                        Context& context, const std::string& place) {
   EncodedPart out;
   out.json = part.part.json;
   out.material = part.part.material;
   ColumnPart columns = to_columns(std::move(part));
-  optimize_order(columns);
+  if (!ordered) optimize_order(columns);
   choose_storage(columns, options, grid, context, place);
   clean_values(columns, context, place);
   out.quantized = needs_quantization(columns);

@@ -27,9 +27,9 @@ struct EncodedPart {
 };
 
 /// Splits nothing and knows no file: pure work on one part, so that parts can be encoded in parallel.
-/// `part` has triangles.
-EncodedPart encode_part(SplitPart part, const WriteOptions& options, const Grid* grid, Context& context,
-                        const std::string& place);
+/// `part` has triangles; `ordered`: its triangles and vertices stay in their order.
+EncodedPart encode_part(SplitPart part, bool ordered, const WriteOptions& options, const Grid* grid,
+                        Context& context, const std::string& place);
 
 /// Puts an encoded part into the buffer and returns its glTF primitive.
 Json place_part(EncodedPart part, BufferWriter& buffers);

@@ -38,8 +38,12 @@ bool has_thickness(const Material& material) {
 /// What decides which meshes can have a grid.
 class Planner {
  public:
-  Planner(const Model& model, const WriteOptions& options, Context& context)
-      : model_(model), options_(options), context_(context), floating_(model.meshes.size()) {}
+  Planner(const Model& model, std::span<const int> vertices_of, const WriteOptions& options, Context& context)
+      : model_(model),
+        vertices_of_(vertices_of),
+        options_(options),
+        context_(context),
+        floating_(model.meshes.size()) {}
 
   QuantizationPlan run() {
     start_plan();
@@ -72,6 +76,7 @@ class Planner {
   }
 
   const Model& model_;
+  std::span<const int> vertices_of_;
   const WriteOptions& options_;
   Context& context_;
   QuantizationPlan plan_;
@@ -90,10 +95,15 @@ void Planner::start_plan() {
 void Planner::group_meshes_and_skins() {
   group_.resize(model_.meshes.size() + model_.skins.size());
   std::iota(group_.begin(), group_.end(), std::size_t{0});
-  for (const Node& node : model_.nodes) {
-    if (!is_shown(node) || node.skin < 0) continue;
-    const std::size_t a = root(static_cast<std::size_t>(node.mesh)), b = root(skin_item(node.skin));
+  const auto join = [&](std::size_t i, std::size_t j) {
+    const std::size_t a = root(i), b = root(j);
     group_[std::max(a, b)] = std::min(a, b);
+  };
+  for (const Node& node : model_.nodes) {
+    if (is_shown(node) && node.skin >= 0) join(static_cast<std::size_t>(node.mesh), skin_item(node.skin));
+  }
+  for (std::size_t m = 0; m < vertices_of_.size(); ++m) {
+    if (vertices_of_[m] >= 0) join(m, static_cast<std::size_t>(vertices_of_[m]));
   }
 }
 
@@ -170,7 +180,7 @@ void Planner::keep_floating() {
   }
   for (std::size_t m = 0; m < floating_.size(); ++m) {
     if (kept_groups.contains(root(m))) {
-      keep(static_cast<std::int64_t>(m), "it shares a skin with a mesh that was kept");
+      keep(static_cast<std::int64_t>(m), "it shares a skin or vertices with a mesh that was kept");
     }
   }
 }
@@ -215,8 +225,9 @@ void Planner::add_nodes() {
 
 }  // namespace
 
-QuantizationPlan plan_quantization(const Model& model, const WriteOptions& options, Context& context) {
-  return Planner(model, options, context).run();
+QuantizationPlan plan_quantization(const Model& model, std::span<const int> vertices_of,
+                                   const WriteOptions& options, Context& context) {
+  return Planner(model, vertices_of, options, context).run();
 }
 
 Accessor fold_grid(const Skin& skin, const Grid& grid) {

@@ -25,10 +25,12 @@ struct QuantizationPlan {
 ///
 /// A mesh without skin gets a grid of its own, and a child node that scales it back below each node that
 /// shows it, so that animations and indices of the node stay right. Meshes that share skins share a grid,
-/// which goes into the inverse bind matrices. Kept as floats, and told to `context`: meshes shown both with
-/// and without skin, as instances (EXT_mesh_gpu_instancing), by no node, by extensions, with points or
-/// lines, or with a material whose numbers are lengths in the mesh's space (KHR_materials_volume).
-QuantizationPlan plan_quantization(const Model& model, const WriteOptions& options, Context& context);
+/// which goes into the inverse bind matrices, and so do meshes that share vertices. Kept as floats, and told
+/// to `context`: meshes shown both with and without skin, as instances (EXT_mesh_gpu_instancing), by no node,
+/// by extensions, with points or lines, or with a material whose numbers are lengths in the mesh's space
+/// (KHR_materials_volume).
+QuantizationPlan plan_quantization(const Model& model, std::span<const int> vertices_of,
+                                   const WriteOptions& options, Context& context);
 
 /// Inverse bind matrices that take positions from the grid.
 Accessor fold_grid(const Skin& skin, const Grid& grid);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string_view>
 
@@ -18,6 +19,7 @@
 #include "fovea/io/gltf_json_write.h"
 #include "fovea/io/gltf_primitive_write.h"
 #include "fovea/io/gltf_quantize.h"
+#include "fovea/io/gltf_shared_vertices.h"
 #include "fovea/model/weld.h"
 
 namespace fovea {
@@ -31,6 +33,7 @@ struct PartJob {
   std::size_t mesh = 0;
   std::string place;
   SplitPart split;
+  bool ordered = false;  ///< Whether it has the vertices of other levels, too.
   EncodedPart encoded;
   Context notes;
 };
@@ -39,8 +42,9 @@ struct PartJob {
 class Writer {
  public:
   Writer(const Model& model, bool binary, const std::string& stem, const WriteOptions& options,
-         Context& context)
+         Context& context, std::span<const int> vertices_of)
       : model_(model),
+        vertices_of_(vertices_of),
         binary_(binary),
         stem_(stem),
         options_(options),
@@ -52,7 +56,7 @@ class Writer {
 
   GltfOutput run() {
     check_references();
-    plan_ = plan_quantization(model_, options_, context_);
+    plan_ = plan_quantization(model_, vertices_of_, options_, context_);
     place_carried_data();
     encode_meshes();
     place_meshes();
@@ -70,6 +74,8 @@ class Writer {
   void check_references() const;
   void place_carried_data();
   void encode_meshes();
+  void share_vertices();
+  int vertices_of(std::size_t mesh) const { return mesh < vertices_of_.size() ? vertices_of_[mesh] : -1; }
   void place_meshes();
   Json mesh_object(const Mesh& mesh, std::vector<Json>&& primitives) const;
   void make_nodes();
@@ -85,6 +91,7 @@ class Writer {
   GltfOutput make_files();
 
   const Model& model_;
+  std::span<const int> vertices_of_;
   bool binary_;
   const std::string& stem_;
   const WriteOptions& options_;
@@ -108,6 +115,8 @@ void Writer::check_references() const {
     check(model_.nodes[n].mesh, model_.meshes.size(), "mesh", fmt::format("/nodes/{}/mesh", n));
     check(model_.nodes[n].skin, model_.skins.size(), "skin", fmt::format("/nodes/{}/skin", n));
   }
+  for (std::size_t m = 0; m < vertices_of_.size(); ++m)
+    check(vertices_of_[m], m, "mesh before it", fmt::format("/meshes/{}", m));
   for (std::size_t a = 0; a < model_.animations.size(); ++a) {
     for (const AnimationChannel& channel : model_.animations[a].channels) {
       check(channel.node, model_.nodes.size(), "node", fmt::format("/animations/{}", a));
@@ -136,19 +145,39 @@ void Writer::encode_meshes() {
       jobs_.push_back(std::move(job));
     }
   }
+  share_vertices();
   parallel_for(context_, jobs_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end && !context_.cancelled(); ++j) {
       PartJob& job = *jobs_[j];
       if (job.split.part.raw || job.split.indices.empty()) continue;
       const auto& grid = plan_.mesh_grid[job.mesh];
-      job.encoded =
-          encode_part(std::move(job.split), options_, grid ? &*grid : nullptr, job.notes, job.place);
+      job.encoded = encode_part(std::move(job.split), job.ordered, options_, grid ? &*grid : nullptr,
+                                job.notes, job.place);
     }
   });
   context_.advance_or_throw("write", 0.7);
   // In order, so that the first place told does not depend on threads.
   for (const auto& job : jobs_) {
     for (const Diagnostic& d : job->notes.diagnostics()) context_.report(d.code, d.message, d.place, d.count);
+  }
+}
+
+/// Gives levels of a mesh the same vertices. Equal data is stored once, so there is no more to do.
+void Writer::share_vertices() {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<PartJob*>> levels;  // by mesh and part
+  std::size_t part = 0;
+  for (std::size_t j = 0; j < jobs_.size(); ++j) {
+    part = j > 0 && jobs_[j - 1]->mesh == jobs_[j]->mesh ? part + 1 : 0;
+    const std::size_t mesh = jobs_[j]->mesh;
+    const int of = vertices_of(mesh);
+    levels[{of >= 0 ? static_cast<std::size_t>(of) : mesh, part}].push_back(jobs_[j].get());
+  }
+  for (const auto& [place, jobs] : levels) {
+    if (jobs.size() < 2) continue;
+    std::vector<SplitPart*> parts;
+    for (PartJob* job : jobs) parts.push_back(&job->split);
+    if (!gltf::share_vertices(parts)) continue;
+    for (PartJob* job : jobs) job->ordered = true;
   }
 }
 
@@ -383,9 +412,9 @@ GltfOutput Writer::make_files() {
 }  // namespace gltf
 
 GltfOutput write_gltf(const Model& model, bool binary, const std::string& stem, const WriteOptions& options,
-                      Context& context) {
+                      Context& context, std::span<const int> vertices_of) {
   try {
-    return gltf::Writer(model, binary, stem, options, context).run();
+    return gltf::Writer(model, binary, stem, options, context, vertices_of).run();
   } catch (const gltf::Json::exception& e) {
     throw Error(ErrorKind::usage, fmt::format("JSON that an element carries is not glTF: {}", e.what()));
   }

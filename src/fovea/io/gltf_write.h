@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include "fovea/io/write.h"
@@ -26,7 +28,12 @@ struct GltfOutput {
 /// and parts without triangles (with the animations of their morph targets; only meshes are renumbered for
 /// it), attributes that glTF cannot hold. Throws Error(usage) for a model that refers to what it does not
 /// have or carries text that is not JSON, Error(limit) for a GLB beyond 4 GiB, Error(cancelled).
+///
+/// `vertices_of` is for levels of detail that are made of the same vertices, [#meshes] or empty: the mesh
+/// before of which each is a coarser level, -1 for none. Their vertices are stored once, those of the
+/// coarsest level first, so that each level uses a beginning of what the level before it uses; they differ in
+/// indices alone. Meshes whose attributes differ keep vertices of their own.
 GltfOutput write_gltf(const Model& model, bool binary, const std::string& stem, const WriteOptions& options,
-                      Context& context);
+                      Context& context, std::span<const int> vertices_of = {});
 
 }  // namespace fovea

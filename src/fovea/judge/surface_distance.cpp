@@ -50,14 +50,14 @@ Deviation deviation(const Surface& from, const ClosestPoint& to, std::int64_t sa
 
 }  // namespace
 
-std::vector<Vec3d> sample_surface(const Surface& surface, std::int64_t count, std::uint64_t seed) {
+std::vector<SurfaceSample> surface_samples(const Surface& surface, std::int64_t count, std::uint64_t seed) {
   std::vector<double> area_before{0};
   const auto at = [&](std::uint32_t v) { return Vec3d(surface.positions[v]); };
   for (const auto& t : surface.triangles) {
     area_before.push_back(area_before.back() + triangle_area(at(t[0]), at(t[1]), at(t[2])));
   }
-  std::vector<Vec3d> points;
-  if (!(area_before.back() > 0)) return points;
+  std::vector<SurfaceSample> samples;
+  if (!(area_before.back() > 0)) return samples;
   Random random(seed);
   std::size_t triangle = 0;
   for (std::int64_t i = 0; i < count; ++i) {
@@ -66,9 +66,15 @@ std::vector<Vec3d> sample_surface(const Surface& surface, std::int64_t count, st
     while (triangle + 1 < surface.triangles.size() && area_before[triangle + 1] <= place) ++triangle;
     // Uniform in the triangle (Turk 1990).
     const double r = std::sqrt(random.uniform()), s = random.uniform();
-    const auto& t = surface.triangles[triangle];
-    points.push_back(at(t[0]) * (1 - r) + at(t[1]) * (r * (1 - s)) + at(t[2]) * (r * s));
+    samples.push_back({static_cast<std::uint32_t>(triangle), {1 - r, r * (1 - s), r * s}});
   }
+  return samples;
+}
+
+std::vector<Vec3d> sample_surface(const Surface& surface, std::int64_t count, std::uint64_t seed) {
+  std::vector<Vec3d> points;
+  for (const SurfaceSample& sample : surface_samples(surface, count, seed))
+    points.push_back(sample.on(surface));
   return points;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "fovea/base/context.h"
 #include "fovea/surface/closest_point.h"
@@ -29,7 +31,20 @@ struct SurfaceDistance {
 SurfaceDistance surface_distance(const Surface& reference, const Surface& test, std::int64_t samples,
                                  const Context& context);
 
-/// Points on a surface, spread by area; fewer than `count` only if it has no area.
+/// A point of a triangle of a surface.
+struct SurfaceSample {
+  std::uint32_t triangle = 0;
+  std::array<double, 3> weights{1, 0, 0};  ///< Of its corners, of sum 1.
+
+  Vec3d on(const Surface& surface) const {
+    const auto& t = surface.triangles[triangle];
+    return surface.position(t[0]) * weights[0] + surface.position(t[1]) * weights[1] +
+           surface.position(t[2]) * weights[2];
+  }
+};
+/// Samples of a surface, spread by area; fewer than `count` only if it has no area.
+std::vector<SurfaceSample> surface_samples(const Surface& surface, std::int64_t count, std::uint64_t seed);
+/// The same as points.
 std::vector<Vec3d> sample_surface(const Surface& surface, std::int64_t count, std::uint64_t seed);
 
 }  // namespace fovea

@@ -87,13 +87,15 @@ void ErrorSelection::look(std::size_t begin, std::size_t end) {
     error = std::isinf(scene_->shapes.error[s]) ? scene_->shapes.error[s] : std::min(error, kMost);
     float with_all = error;
     for (const std::uint32_t needed : levels_.needs_of(s)) with_all = std::max(with_all, with_all_[needed]);
-    with_all_[s] = with_all;
     if (is_seen) {
       for (const std::uint32_t needed : levels_.needs_of(s)) error = std::max(error, on_screen_[needed]);
     }
     for (const std::uint32_t maker : makers_[s]) {
-      if (maker != kInvalid) error = std::max(error, on_screen_[maker]);
+      if (maker == kInvalid) continue;
+      with_all = std::max(with_all, with_all_[maker]);
+      error = std::max(error, on_screen_[maker]);
     }
+    with_all_[s] = with_all;
     if (scene_->shapes.takes_more[s] != 0) error = with_all;
     on_screen_[s] = error;
     counts_[std::bit_cast<std::uint32_t>(error) / kHalf] += levels_.removed_by(s);

@@ -1,10 +1,11 @@
 #include "fovea/lod/level_cracks.h"
 
 #include <algorithm>
-#include <numeric>
-#include <tuple>
+#include <functional>
 #include <utility>
 #include <vector>
+
+#include "fovea/model/key_table.h"
 
 namespace fovea {
 
@@ -14,22 +15,21 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 Edge edge(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Each edge once, sorted, of those that come so many times that `wanted(times)`.
-std::vector<Edge> those(std::vector<Edge> edges, const auto& wanted) {
-  std::ranges::sort(edges);
-  std::vector<Edge> result;
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end] == edges[begin]) ++end;
-    if (wanted(end - begin)) result.push_back(edges[begin]);
+/// Calls f(begin, end) for each run of equal edges in a sorted list.
+void for_runs(const auto& sorted, const auto& edge_of, const auto& f) {
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    while (end < sorted.size() && edge_of(sorted[end]) == edge_of(sorted[begin])) ++end;
+    f(begin, end);
   }
-  return result;
 }
 
 }  // namespace
 
 struct CrackFinder::Edges {
   std::vector<std::uint32_t> place;  ///< [#nodes], the first node that is where each is.
-  std::vector<Edge> borders;         ///< Of the original, between nodes that stand for their place.
+  /// Of the original, once for each triangle on them: between its own nodes, as others at that place may be
+  /// those of a vertex that comes there later.
+  std::vector<Edge> borders;
 };
 
 CrackFinder::CrackFinder(const VertexHierarchy& hierarchy) : hierarchy_(hierarchy) {
@@ -43,25 +43,42 @@ CrackFinder::CrackFinder(const VertexHierarchy& hierarchy) : hierarchy_(hierarch
       }
     }
   }
-  const auto key = [&](std::uint32_t node) {
-    const LevelVertices& vertices = hierarchy.vertices[mesh_of[node]];
-    const Vec3f p = vertices.positions[hierarchy.vertex[node]];
-    return std::tuple(mesh_of[node], p.x, p.y, p.z);
+  // What a vertex is to readers, too (model/weld.h): a place at rest and in all morph targets.
+  std::vector<KeyTable> tables;
+  std::vector<std::vector<std::uint32_t>> first(hierarchy.vertices.size());  // [#meshes][#places]
+  for (const LevelVertices& vertices : hierarchy.vertices)
+    tables.emplace_back(3 * (1 + vertices.position_morphs.size()), vertices.positions.size());
+  std::vector<std::uint32_t> key;
+  for (std::uint32_t node = 0; node < hierarchy.node_count(); ++node) {
+    const std::uint32_t mesh = mesh_of[node], vertex = hierarchy.vertex[node];
+    const LevelVertices& vertices = hierarchy.vertices[mesh];
+    key.clear();
+    const auto add = [&](Vec3f p) {
+      for (const float x : {p.x, p.y, p.z}) key.push_back(KeyTable::word(x));
+    };
+    add(vertices.positions[vertex]);
+    for (const auto& morph : vertices.position_morphs) add(morph[vertex]);
+    const std::uint32_t place = tables[mesh].insert(key);
+    if (place == first[mesh].size()) first[mesh].push_back(node);
+    original->place.push_back(first[mesh][place]);
+  }
+  struct Side {
+    Edge places, nodes;
   };
-  std::vector<std::uint32_t> order(hierarchy.node_count());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(order, {}, [&](std::uint32_t node) { return std::pair(key(node), node); });
-  original->place.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool again = i > 0 && key(order[i]) == key(order[i - 1]);
-    original->place[order[i]] = again ? original->place[order[i - 1]] : order[i];
-  }
-  std::vector<Edge> edges;
+  std::vector<Side> sides;
   for (const auto& c : hierarchy.corners) {
-    for (std::size_t k = 0; k < 3; ++k)
-      edges.push_back(edge(original->place[c[k]], original->place[c[(k + 1) % 3]]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+      sides.push_back({edge(original->place[a], original->place[b]), {a, b}});
+    }
   }
-  original->borders = those(std::move(edges), [](std::size_t times) { return times % 2 == 1; });
+  std::ranges::sort(sides, {}, &Side::places);
+  for_runs(
+      sides, [](const Side& side) { return side.places; },
+      [&](std::size_t begin, std::size_t end) {
+        if ((end - begin) % 2 == 0) return;
+        for (std::size_t i = begin; i < end; ++i) original->borders.push_back(sides[i].nodes);
+      });
   original_ = std::move(original);
 }
 
@@ -84,9 +101,12 @@ std::size_t CrackFinder::count(const StepBits& taken) const {
   }
   for (const auto& [a, b] : original_->borders) borders.push_back(edge(place(a), place(b)));
   std::ranges::sort(borders);
-  const std::vector<Edge> open = those(std::move(edges), [](std::size_t times) { return times == 1; });
-  return static_cast<std::size_t>(
-      std::ranges::count_if(open, [&](const Edge& e) { return !std::ranges::binary_search(borders, e); }));
+  std::ranges::sort(edges);
+  std::size_t cracks = 0;
+  for_runs(edges, std::identity(), [&](std::size_t begin, std::size_t end) {
+    cracks += end - begin == 1 && !std::ranges::binary_search(borders, edges[begin]);
+  });
+  return cracks;
 }
 
 }  // namespace fovea

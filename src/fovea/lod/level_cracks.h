@@ -10,7 +10,7 @@ namespace fovea {
 
 /// Looks for cracks in levels: edges between places, whatever values meet there, on which a single triangle
 /// ends though no border edge of the original has become that edge. A border edge is one on which an odd
-/// number of triangles end.
+/// number of triangles end. What touches at rest and parts in a morph target are two places.
 class CrackFinder {
  public:
   /// `hierarchy` must outlive this. O(#F log #F).

@@ -143,7 +143,7 @@ class ChainMaker {
   }
 
   std::vector<LodChoice> choose(const CollapseRecord& record, const std::vector<double>& distances) {
-    const LodReference reference(model_, options_.key_poses, options_.distance_samples, context_);
+    LodReference reference(model_, options_.key_poses, options_.distance_samples, context_);
     LodMeasure measure(model_, record, reference, context_);
     const double radius = chain_.sphere.radius;
     const double count = static_cast<double>(std::max(targets_.size(), distances.size()));
@@ -224,7 +224,8 @@ OptionList describe(LodChainOptions& o) {
       {"levels", "Number of levels, the original among them.", &o.levels, "", 2, 32},
       {"ratio", "Part of the triangles of the level before that each level keeps.", &o.ratio, "", 0.01, 0.99},
       {"key-poses",
-       "Poses of animations and morph targets in which errors are measured, besides the one at rest.",
+       "Poses of animations and morph targets in which errors are measured on all points, besides the one at "
+       "rest; on some points they are in all poses. 0: at rest alone.",
        &o.key_poses, "", 0, 64},
       {"distance-samples", "Points on each surface for the distance between them.", &o.distance_samples, "",
        100, 1e8},

@@ -33,15 +33,17 @@ struct LodChainOptions {
   FileForm form;
   bool textures_follow = true;  ///< Images get as many texels as the level has pixels where it comes in.
   ShrinkOptions textures;       ///< How; its `scales` and `max_bytes` do not count.
-  std::int64_t key_poses = 4;   ///< Poses in which errors are measured, besides rest; 0 to 64.
+  /// Poses in which errors are measured on all points, besides rest; 0 to 64. With 0 motion does not count.
+  std::int64_t key_poses = 4;
   std::int64_t distance_samples = 50000;  ///< Points on each surface for that.
   bool pictures = true;                   ///< Whether pictures of each level are compared, too.
 };
 /// `levels`, `ratio`, `key_poses` and `distance_samples`.
 OptionList describe(LodChainOptions& options);
 
-/// How far a level is from the original, both ways, in scene units (surface_distance.h): the largest over the
-/// rest pose and key poses (key_poses.h).
+/// How far a level is from the original, both ways, in scene units (surface_distance.h): the largest distance
+/// over all poses of animations and morph targets (`motion_poses`, key_poses.h), the largest mean over the
+/// rest pose and key poses.
 struct LodError {
   double max = 0, mean = 0;
 };

@@ -37,36 +37,67 @@ std::vector<double> lod_distances(const LodChainOptions& options, double radius)
   return distances;
 }
 
-LodChoice LodMeasure::at(std::uint64_t triangles) {
+LodChoice LodMeasure::level(std::uint64_t triangles) const {
   LodChoice choice;
   choice.steps = record_.steps_to(triangles);
   choice.triangles = record_.triangles_after(choice.steps);
-  for (const LodChoice& known : measured_) {
-    if (known.steps == choice.steps) return known;
-  }
-  if (choice.steps > 0) choice.error = reference_.error(replay(model_, record_, choice.steps), context_);
-  measured_.push_back(choice);
   return choice;
 }
 
-LodChoice LodMeasure::simplest(double length) {
-  const auto fits = [&](const LodChoice& choice) { return choice.error.max <= length; };
-  LodChoice good = at(record_.triangles_before), bad = at(0);
-  if (fits(bad)) return bad;
-  // What was measured for other levels tells where to look.
-  for (const LodChoice& known : measured_) {
-    if (fits(known) && known.triangles < good.triangles) good = known;
+LodChoice LodMeasure::at(std::uint64_t triangles) {
+  LodChoice choice = level(triangles);
+  for (const Measured& known : measured_) {
+    if (known.whole && known.choice.steps == choice.steps) return known.choice;
   }
-  for (const LodChoice& known : measured_) {
-    if (!fits(known) && known.triangles < good.triangles && known.triangles > bad.triangles) bad = known;
+  if (choice.steps > 0) choice.error = reference_.error(replay(model_, record_, choice.steps), context_);
+  measured_.push_back({choice, true, 0});
+  return choice;
+}
+
+/// Whether what is known of a level says if it is within `length` in all key poses that there are by now.
+bool LodMeasure::tells(const Measured& known, double length) const {
+  return known.whole || known.key_poses == reference_.key_pose_count() || known.choice.error.max > length;
+}
+
+LodChoice LodMeasure::in_key_poses(std::uint64_t triangles, double length) {
+  LodChoice choice = level(triangles);
+  for (const Measured& known : measured_) {
+    if (known.choice.steps == choice.steps && tells(known, length)) return known.choice;
+  }
+  if (choice.steps > 0)
+    choice.error = reference_.error_in_key_poses(replay(model_, record_, choice.steps), context_);
+  measured_.push_back({choice, false, reference_.key_pose_count()});
+  return choice;
+}
+
+LodChoice LodMeasure::simplest_in_key_poses(double length) {
+  const auto fits = [&](const LodChoice& choice) { return choice.error.max <= length; };
+  LodChoice good = at(record_.triangles_before), bad = in_key_poses(0, length);
+  if (fits(bad)) return bad;
+  // What was measured before tells where to look.
+  for (const Measured& known : measured_) {
+    const LodChoice& choice = known.choice;
+    if (tells(known, length) && fits(choice) && choice.triangles < good.triangles) good = choice;
+  }
+  for (const Measured& known : measured_) {
+    const LodChoice& choice = known.choice;
+    if (!fits(choice) && choice.triangles < good.triangles && choice.triangles > bad.triangles) bad = choice;
   }
   while (static_cast<double>(good.triangles) > kPrecision * static_cast<double>(bad.triangles)) {
     const double middle = std::sqrt(static_cast<double>(good.triangles) * static_cast<double>(bad.triangles));
-    const LodChoice next = at(static_cast<std::uint64_t>(middle));
+    const LodChoice next = in_key_poses(static_cast<std::uint64_t>(middle), length);
     if (next.triangles >= good.triangles || next.triangles <= bad.triangles) break;
     (fits(next) ? good : bad) = next;
   }
   return good;
+}
+
+LodChoice LodMeasure::simplest(double length) {
+  // A level that is beyond it in some other pose adds that to the key poses.
+  for (;;) {
+    const LodChoice found = at(simplest_in_key_poses(length).triangles);
+    if (found.error.max <= length) return found;
+  }
 }
 
 std::vector<LodChoice> rising(const std::vector<LodChoice>& choices, std::uint64_t total, Context& context) {

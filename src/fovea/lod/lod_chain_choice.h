@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -27,12 +28,11 @@ std::vector<std::uint64_t> lod_targets(const LodChainOptions& options, std::uint
 /// The distances at which levels 1, 2, ... come in; empty if counts say.
 std::vector<double> lod_distances(const LodChainOptions& options, double radius);
 
-/// Measures levels of a record, each once.
+/// Measures levels of a record.
 class LodMeasure {
  public:
   /// Refers to all of them.
-  LodMeasure(const Model& model, const CollapseRecord& record, const LodReference& reference,
-             Context& context)
+  LodMeasure(const Model& model, const CollapseRecord& record, LodReference& reference, Context& context)
       : model_(model), record_(record), reference_(reference), context_(context) {}
 
   /// The level of at most so many triangles.
@@ -42,11 +42,22 @@ class LodMeasure {
   LodChoice simplest(double length);
 
  private:
+  /// What is known of a level: an error that it does not stay below, ...
+  struct Measured {
+    LodChoice choice;
+    bool whole = false;         ///< which is its own,
+    std::size_t key_poses = 0;  ///< or that in so many key poses.
+  };
+  LodChoice level(std::uint64_t triangles) const;
+  LodChoice in_key_poses(std::uint64_t triangles, double length);
+  LodChoice simplest_in_key_poses(double length);
+  bool tells(const Measured& known, double length) const;
+
   const Model& model_;
   const CollapseRecord& record_;
-  const LodReference& reference_;
+  LodReference& reference_;
   Context& context_;
-  std::vector<LodChoice> measured_;
+  std::vector<Measured> measured_;
 };
 
 /// Those that a chain keeps of `choices`, finest first, as `make_lod_chain` says; `total` is the original's

@@ -58,7 +58,7 @@ class LodMerger {
   LodMerger(const LodChain& chain, double vanish, Context& context)
       : chain_(chain), vanish_(vanish), context_(context), all_(chain.levels.front().model) {}
 
-  Model run() {
+  Model run(std::vector<int>* level_of) {
     add_scene();
     radii_ = shown_radii(all_);
     find_needed();
@@ -68,6 +68,7 @@ class LodMerger {
     const std::size_t count = all_.nodes.size();
     for (std::size_t n = 0; n < count; ++n) add_levels(n);
     tell_pointers();
+    if (level_of != nullptr) *level_of = find_originals();
     return std::move(all_);
   }
 
@@ -113,6 +114,18 @@ class LodMerger {
         return channel.json.find(place) != std::string::npos;
       });
     });
+  }
+
+  /// [#meshes] Of the original, that each is a level of; -1 for those.
+  std::vector<int> find_originals() const {
+    std::vector<int> original(all_.meshes.size(), -1);
+    for (const std::vector<int>& level : mesh_) {
+      for (std::size_t m = 0; m < level.size(); ++m) {
+        if (level[m] != static_cast<int>(m))
+          original[static_cast<std::size_t>(level[m])] = static_cast<int>(m);
+      }
+    }
+    return original;
   }
 
   void add_levels(std::size_t n) {
@@ -214,7 +227,7 @@ class LodMerger {
 
 }  // namespace
 
-Model with_lods(const LodChain& chain, double vanish, Context& context) {
+Model with_lods(const LodChain& chain, double vanish, Context& context, std::vector<int>* level_of) {
   if (chain.levels.size() < 2)
     throw Error(ErrorKind::usage, "a chain of one level has nothing to switch", "lods");
   const double last = chain.levels.back().coverage;
@@ -223,7 +236,7 @@ Model with_lods(const LodChain& chain, double vanish, Context& context) {
                 fmt::format("nothing can vanish at a coverage of {}: the last level comes in at {:.4g}",
                             vanish, last),
                 "--vanish", "give less; 0 never lets it vanish");
-  return LodMerger(chain, vanish, context).run();
+  return LodMerger(chain, vanish, context).run(level_of);
 }
 
 }  // namespace fovea

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "fovea/base/context.h"
 #include "fovea/lod/lod_chain.h"
 #include "fovea/model/model.h"
@@ -21,6 +23,10 @@ namespace fovea {
 /// Levels share what is equal: images, textures, materials, meshes. Materials whose images differ are copied,
 /// also for variants (KHR_materials_variants). Pointers of KHR_animation_pointer lead to level 0 alone
 /// ("lod-pointer").
-Model with_lods(const LodChain& chain, double vanish, Context& context);
+///
+/// `level_of` receives of which mesh of the original each mesh is a level, -1 for those of the original: for
+/// `write_gltf`, so that levels are made of the same vertices. Half-edge collapses leave few that a level
+/// does not share with the one before.
+Model with_lods(const LodChain& chain, double vanish, Context& context, std::vector<int>* level_of = nullptr);
 
 }  // namespace fovea

@@ -59,6 +59,7 @@ class HierarchyBuilder {
   void add_mesh(const TriMesh& mesh);
   void add_vertices(std::size_t m);
   void take(std::size_t s);
+  void forget_followed(std::size_t m, std::vector<std::uint32_t>& corners);
   void mark_faces(std::size_t s);
   bool has_changed(std::size_t s, const Wedge& wedge) const;
   std::uint32_t add_node(std::size_t m, VertexId v, const std::vector<ValueId>& values);
@@ -182,7 +183,26 @@ void HierarchyBuilder::take(std::size_t s) {
     if (is_there(c) || nodes_[node].parent != kInvalid) continue;
     if (const Wedge* wedge = most_alike(values_at(step.mesh, c), wedges)) replace(node, wedge->node, s);
   }
-  std::erase_if(at_kept, [&](std::uint32_t c) { return !is_there(c); });
+  forget_followed(step.mesh, at_kept);
+}
+
+/// Of corners whose triangles are gone keeps those whose nodes nothing replaces so far and nobody else will
+/// see replaced, one for each.
+void HierarchyBuilder::forget_followed(std::size_t m, std::vector<std::uint32_t>& corners) {
+  const auto is_there = [&](std::uint32_t c) { return live_.is_there(m, FaceId{c / 3}); };
+  const auto gone = std::stable_partition(corners.begin(), corners.end(), is_there);
+  std::vector<std::uint32_t> nodes;
+  for (auto c = corners.begin(); c != gone; ++c) nodes.push_back(node_of(m, *c));
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  auto kept = gone;
+  for (auto c = gone; c != corners.end(); ++c) {
+    const std::uint32_t node = node_of(m, *c);
+    if (nodes_[node].parent != kInvalid || std::binary_search(nodes.begin(), nodes.end(), node)) continue;
+    nodes.insert(std::lower_bound(nodes.begin(), nodes.end(), node), node);
+    *kept++ = *c;
+  }
+  corners.erase(kept, corners.end());
 }
 
 /// The wedge in use with most of the values; null without any.

@@ -136,12 +136,12 @@ void CollapseStepper::merge_edges(std::uint32_t a, std::uint32_t b) {
 }
 
 /// After a collapse that pinches the surface triangles from either end can lie on each other. Back to back
-/// they enclose nothing: both go. Of two that face the same way one goes. What lay on each other before stays
-/// so.
+/// they enclose nothing: both go. Two that face the same way stay: without one of them the triangles beside
+/// it would end at nothing, now or when what is left goes. What lay on each other before stays so.
 void CollapseStepper::drop_coincident_faces() {
   legality_.for_coincident([&](std::uint32_t c, std::uint32_t d) {
     if (!mesh_.face_alive(c / 3) || !mesh_.face_alive(d / 3)) return;
-    if (mesh_.view(c).next != mesh_.view(d).next) drop_face(d / 3);
+    drop_face(d / 3);
     drop_face(c / 3);
   });
 }

@@ -102,7 +102,7 @@ void Legality::make_room(std::size_t corners) {
   shared_at_b_.resize(corners);
 }
 
-/// Whether a triangle at either end goes: it is on the edge, or another comes to lie on it.
+/// Whether a triangle at either end goes: it is on the edge, or another comes to lie back to back with it.
 bool Legality::goes(std::uint32_t face) const {
   const auto shared = shared_faces(b_);
   bool goes = std::find(shared.begin(), shared.end(), face) != shared.end();

@@ -41,17 +41,15 @@ class Legality {
   /// Whether a vertex across the edge has triangles, but none that would still join it to the edge's ends: a
   /// strap between two vertices goes.
   bool cuts_strap() const;
-  /// Calls f(c, d) for the corners at a and at b that are about to be the same place of two triangles on each
-  /// other, one from either end.
+  /// Calls f(c, d) for the corners at a and at b that are about to be the same place of two triangles back to
+  /// back, one from either end.
   template <class F>
   void for_coincident(F&& f) const {
     if (!may_coincide()) return;
     for (std::size_t j = far_at_a_; j < far_count_; ++j) {
       for (std::size_t i = 0; i < far_at_a_; ++i) {
         const Far &at_a = far_[i], &at_b = far_[j];
-        const bool same_way = at_a.next == at_b.next && at_a.previous == at_b.previous;
-        if (same_way || (at_a.next == at_b.previous && at_a.previous == at_b.next))
-          f(at_a.corner, at_b.corner);
+        if (at_a.next == at_b.previous && at_a.previous == at_b.next) f(at_a.corner, at_b.corner);
       }
     }
   }

@@ -112,12 +112,6 @@ Motion find_motion(const Model& model) {
 
 // --- Candidates ---------------------------------------------------------------------------------------
 
-/// A pose that is made when it is needed: those of a model with many nodes are large.
-struct Candidate {
-  std::string name;
-  std::function<Pose()> pose;
-};
-
 /// At most `count` times: the keys and as many between each two, or, of more keys, from the first to the
 /// last; the middle if one must do.
 std::vector<double> spread_times(const std::vector<double>& keys, std::size_t count) {
@@ -137,8 +131,28 @@ std::vector<double> spread_times(const std::vector<double>& keys, std::size_t co
   return times;
 }
 
+PoseSource moment(const Model& model, std::size_t animation, double time_s) {
+  return {fmt::format("animation {} at {:g} s", animation, time_s),
+          [&model, animation, time_s] { return pose_at(model, animation, time_s); }};
+}
+
+/// The keys and as many times between them that none is farther than `step` from the next; keys nearer than
+/// half of that to the one before are left out, but for the last.
+std::vector<double> dense_times(const std::vector<double>& keys, double step) {
+  std::vector<double> times;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const double gap = times.empty() ? 0 : keys[k] - times.back();
+    if (!times.empty() && gap < 0.5 * step && k + 1 < keys.size()) continue;
+    const double first = times.empty() ? keys[k] : times.back();
+    const double parts = std::max(1.0, std::ceil(gap / step));
+    for (double i = 1; i < parts; ++i) times.push_back(first + gap * (i / parts));
+    times.push_back(keys[k]);
+  }
+  return times;
+}
+
 /// One for each animation that moves anything, and the others by duration; at most `limit`.
-std::vector<Candidate> moments(const Model& model, const Motion& motion, std::size_t limit) {
+std::vector<PoseSource> moments(const Model& model, const Motion& motion, std::size_t limit) {
   std::vector<std::size_t> moving;
   for (std::size_t a = 0; a < motion.key_times_s.size(); ++a) {
     if (!motion.key_times_s[a].empty()) moving.push_back(a);
@@ -149,13 +163,12 @@ std::vector<Candidate> moments(const Model& model, const Motion& motion, std::si
   };
   double total = 0;
   for (const std::size_t a : moving) total += duration(a);
-  std::vector<Candidate> candidates;
+  std::vector<PoseSource> candidates;
   for (const std::size_t a : moving) {
     const double share = total > 0 ? duration(a) / total : 0;
     const auto extra = static_cast<std::size_t>(share * static_cast<double>(limit - moving.size()));
     for (const double time : spread_times(motion.key_times_s[a], 1 + extra)) {
-      candidates.push_back({fmt::format("animation {} at {:g} s", a, time),
-                            [&model, a, time] { return pose_at(model, a, time); }});
+      candidates.push_back(moment(model, a, time));
     }
   }
   return candidates;
@@ -172,7 +185,7 @@ Pose target_pose(const Model& model, std::size_t mesh, std::size_t target) {
 }
 
 /// Every target of the meshes shown whose weights no animation drives; at most `limit`.
-std::vector<Candidate> single_targets(const Model& model, const Motion& motion, std::size_t limit) {
+std::vector<PoseSource> single_targets(const Model& model, const Motion& motion, std::size_t limit) {
   std::vector<bool> morphing(model.meshes.size());
   const std::vector<bool> nodes = morphing_nodes(model);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -183,7 +196,7 @@ std::vector<Candidate> single_targets(const Model& model, const Motion& motion, 
     if (!morphing[m] || motion.drives_weights[m]) continue;
     for (std::size_t t = 0; t < model.meshes[m].surface.target_count(); ++t) targets.emplace_back(m, t);
   }
-  std::vector<Candidate> candidates;
+  std::vector<PoseSource> candidates;
   for (const auto& [mesh, target] : evenly_chosen(targets, limit)) {
     candidates.push_back(
         {fmt::format("target {} of mesh {}", target, mesh),
@@ -192,17 +205,17 @@ std::vector<Candidate> single_targets(const Model& model, const Motion& motion, 
   return candidates;
 }
 
-Candidate at_rest(const Model& model) {
+PoseSource at_rest(const Model& model) {
   return {"rest", [&model] { return rest_pose(model); }};
 }
 
-std::vector<Candidate> find_candidates(const Model& model) {
+std::vector<PoseSource> find_candidates(const Model& model) {
   const Motion motion = find_motion(model);
   const bool animated = std::any_of(motion.key_times_s.begin(), motion.key_times_s.end(),
                                     [](const std::vector<double>& times) { return !times.empty(); });
-  const std::vector<Candidate> targets =
+  const std::vector<PoseSource> targets =
       single_targets(model, motion, animated ? kMaxCandidates / 2 : kMaxCandidates - 1);
-  std::vector<Candidate> candidates =
+  std::vector<PoseSource> candidates =
       animated ? moments(model, motion, kMaxCandidates - targets.size()) : std::vector{at_rest(model)};
   candidates.insert(candidates.end(), targets.begin(), targets.end());
   return candidates;
@@ -256,7 +269,7 @@ bool all_finite(const std::vector<Vec3d>& points) {
 }
 
 /// The sampled points of each candidate. Those with points that are not numbers go.
-std::vector<std::vector<Vec3d>> place_candidates(const Model& model, std::vector<Candidate>& candidates,
+std::vector<std::vector<Vec3d>> place_candidates(const Model& model, std::vector<PoseSource>& candidates,
                                                  const Context& context) {
   const auto sample = sample_vertices(model, instances(model, rest_pose(model)));
   std::vector<std::vector<Vec3d>> points(candidates.size());
@@ -330,7 +343,7 @@ OptionList describe(KeyPoseOptions& o) {
 std::vector<KeyPose> key_poses(const Model& model, const KeyPoseOptions& options, const Context& context) {
   KeyPoseOptions checked = options;
   check(describe(checked));
-  std::vector<Candidate> candidates = find_candidates(model);
+  std::vector<PoseSource> candidates = find_candidates(model);
   const std::vector<std::vector<Vec3d>> points = place_candidates(model, candidates, context);
   if (candidates.empty()) return {{rest_pose(model), "rest", 0}};
   const double diagonal = bounds(model).diagonal();
@@ -342,6 +355,19 @@ std::vector<KeyPose> key_poses(const Model& model, const KeyPoseOptions& options
         {candidates[pose].pose(), candidates[pose].name, distance > 0 ? distance / diagonal : 0});
   }
   return result;
+}
+
+std::vector<PoseSource> motion_poses(const Model& model, double step_s, std::size_t most) {
+  const Motion motion = find_motion(model);
+  std::vector<PoseSource> poses;
+  for (std::size_t a = 0; a < motion.key_times_s.size(); ++a) {
+    for (const double time : dense_times(motion.key_times_s[a], step_s))
+      poses.push_back(moment(model, a, time));
+  }
+  const std::vector<PoseSource> targets = single_targets(model, motion, most / 2);
+  poses = evenly_chosen(poses, most - targets.size());
+  poses.insert(poses.end(), targets.begin(), targets.end());
+  return poses;
 }
 
 }  // namespace fovea

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,5 +41,17 @@ struct KeyPose {
 /// Throws Error(usage) for a count out of range. Parallel; the same for any number of threads. O(#V + #F)
 /// and, for each candidate, O(#nodes + #keys).
 std::vector<KeyPose> key_poses(const Model& model, const KeyPoseOptions& options, const Context& context);
+
+/// A pose that is made when it is needed: those of a model with many nodes are large.
+struct PoseSource {
+  std::string name;  ///< As KeyPose's.
+  std::function<Pose()> pose;
+};
+
+/// All that animations and morph targets do to what is seen, besides the rest pose: every animation that
+/// moves anything shown at its keys and between them, at most `step_s` apart (keys nearer than half of that
+/// count once), and every morph target alone at weight 1 where no animation drives the weights of its mesh.
+/// At most `most` of them, evenly chosen; so of more than that steps are longer. Refers to the model.
+std::vector<PoseSource> motion_poses(const Model& model, double step_s, std::size_t most);
 
 }  // namespace fovea
