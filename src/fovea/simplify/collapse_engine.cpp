@@ -238,13 +238,15 @@ void Engine::price_by_views(std::span<const Due> edges) {
   }
 }
 
-/// Room for the steps to the target, if there is one: most take two triangles, and one value of each channel.
+/// Room for the steps to the target, if there is one: most take a vertex with its share of the triangles, and
+/// one value of each channel.
 void Engine::reserve_record() {
   const std::uint64_t faces = mesh_.live_faces > target_ ? mesh_.live_faces - target_ : 0;
   CollapseRecord& record = outcome_.record;
   if (record.steps.empty()) record.triangles_before = mesh_.live_faces;
   if (target_ == 0) return;
-  const std::uint64_t steps = faces / 2 + faces / 32;
+  const std::uint64_t vertices = mesh_.vertices.size();
+  const std::uint64_t steps = faces * vertices / mesh_.faces.size() + vertices / 32;
   record.removed_faces.reserve(record.removed_faces.size() + faces + 1);
   record.steps.reserve(record.steps.size() + steps);
   std::uint64_t values = 0, floats = 0;
@@ -254,8 +256,8 @@ void Engine::reserve_record() {
     floats += size * static_cast<std::uint64_t>(channel.width);
   }
   record.joins.reserve(values);
-  record.writes.reserve(values);
-  record.floats.reserve(floats);
+  record.writes.reserve(values + values / 8);  // a value can be set again and again
+  record.floats.reserve(floats + floats / 8);
 }
 
 // --- The loop --------------------------------------------------------------------------------------
