@@ -10,9 +10,10 @@ namespace fovea::bench {
 /// What a piece of work cost. All zero if it failed.
 struct Cost {
   double wall_seconds = 0;
-  double cpu_seconds = 0;        ///< User and system time over all threads.
-  std::uint64_t peak_bytes = 0;  ///< Resident memory at its highest, beyond what was there before.
-  std::uint64_t result = 0;      ///< What the work returned.
+  double cpu_seconds = 0;  ///< User and system time over all threads.
+  /// Resident memory at its highest, beyond what was there before; pages of the program are there before.
+  std::uint64_t peak_bytes = 0;
+  std::uint64_t result = 0;  ///< What the work returned.
 };
 
 /// User and system time that this process has used so far, over all threads.

@@ -86,6 +86,25 @@ TEST(CollapseMesh, JoinedRingsHoldTheCornersOfBoth) {
   }
 }
 
+TEST(CollapseMesh, RingsKeepTheRoomOfCornersThatLeave) {
+  CollapseMesh mesh = make(test::icosphere(3));
+  const std::size_t corners = mesh.corners.size();
+  const auto inside = [&](const CollapseEdge& e) {
+    return mesh.ring(e.ends[0]).size() == 6 && mesh.ring(e.ends[1]).size() == 6;
+  };
+  const auto found = std::find_if(mesh.edges.begin(), mesh.edges.end(), inside);
+  ASSERT_NE(found, mesh.edges.end());
+  const auto [a, b] = found->ends;
+  const EdgeCorners shared = mesh.edge_corners(static_cast<std::uint32_t>(found - mesh.edges.begin()), a);
+  ASSERT_EQ(shared.count, 2u);
+  for (std::size_t i = 0; i < shared.count; ++i) {
+    for (const std::uint32_t c : shared.pairs[i]) mesh.unlink_corner(c);
+  }
+  mesh.join_rings(a, b);
+  EXPECT_EQ(mesh.ring(b).size(), 8u);
+  EXPECT_EQ(mesh.corners.size(), corners);
+}
+
 TEST(CollapseMesh, CountsFacesOnEdges) {
   const CollapseMesh mesh = make(test::non_manifold_edge());
   const auto edges_with = [&](std::uint32_t faces) {

@@ -238,24 +238,29 @@ void Engine::price_by_views(std::span<const Due> edges) {
   }
 }
 
-/// Room for the steps to the target, if there is one: most take two triangles, and one value of each channel.
+/// Room for the steps to the target, if there is one: most take a vertex with its share of the triangles, and
+/// one value of each channel.
 void Engine::reserve_record() {
   const std::uint64_t faces = mesh_.live_faces > target_ ? mesh_.live_faces - target_ : 0;
   CollapseRecord& record = outcome_.record;
   if (record.steps.empty()) record.triangles_before = mesh_.live_faces;
-  if (target_ == 0) return;
-  const std::uint64_t steps = faces / 2 + faces / 32;
-  record.removed_faces.reserve(record.removed_faces.size() + faces + 1);
-  record.steps.reserve(record.steps.size() + steps);
-  std::uint64_t values = 0, floats = 0;
+  if (target_ == 0 || faces == 0) return;
+  // Some more, as a value can be set again and again.
+  const double share = 1.125 * static_cast<double>(faces) / static_cast<double>(mesh_.faces.size());
+  const auto part = [&](std::size_t all) {
+    return static_cast<std::size_t>(share * static_cast<double>(all));
+  };
+  std::size_t values = 0, floats = 0;
   for (const Channel& channel : state_.channels) {
-    const std::uint64_t size = channel.layer_value.size();
+    const std::size_t size = channel.layer_value.size();
     values += size;
-    floats += size * static_cast<std::uint64_t>(channel.width);
+    floats += size * static_cast<std::size_t>(channel.width);
   }
-  record.joins.reserve(values);
-  record.writes.reserve(values);
-  record.floats.reserve(floats);
+  record.removed_faces.reserve(record.removed_faces.size() + faces + 1);
+  record.steps.reserve(record.steps.size() + part(mesh_.vertices.size()));
+  record.joins.reserve(record.joins.size() + part(values));
+  record.writes.reserve(record.writes.size() + part(values));
+  record.floats.reserve(record.floats.size() + part(floats));
 }
 
 // --- The loop --------------------------------------------------------------------------------------

@@ -51,7 +51,7 @@ void CollapseMesh::link_rings() {
     end += std::bit_ceil(std::uint32_t{v.ring_size});
     v.ring_size = 0;
   }
-  corners.reserve(end + end / 4);  // rings that grow move to the end
+  corners.reserve(end + end / 8);  // rings that grow move to the end
   corners.assign(end, kInvalid);
   for (std::uint32_t c = 0; c < 3 * faces.size(); ++c) {
     CollapseVertex& v = vertices[vertex(c)];
@@ -88,40 +88,42 @@ void CollapseMesh::unlink_corner(std::uint32_t c) {
   std::uint32_t* const begin = corners.data() + v.ring_begin;
   std::uint32_t* const last = begin + v.ring_size - 1;
   *std::find(begin, last, c) = *last;
+  const std::uint32_t room = v.room();
   --v.ring_size;
+  if (v.room() < room && v.spare < 3) ++v.spare;
 }
 
 void CollapseMesh::join_rings(std::uint32_t a, std::uint32_t b) {
   CollapseVertex &from = vertices[a], &to = vertices[b];
   const std::uint32_t size = from.ring_size + to.ring_size;
-  if (size > std::bit_ceil(std::uint32_t{to.ring_size})) {
-    const std::uint32_t begin = take_room(size);
-    std::copy_n(corners.begin() + to.ring_begin, to.ring_size, corners.begin() + begin);
-    give_room(to.ring_begin, to.ring_size);
-    to.ring_begin = begin;
+  const bool stays = size <= to.room(), moves = !stays && size <= from.room();
+  const std::uint32_t room = stays ? to.room() : moves ? from.room() : std::bit_ceil(size);
+  const std::uint32_t begin = stays ? to.ring_begin : moves ? from.ring_begin : take_room(room);
+  for (const std::uint32_t c : ring(a)) faces[c / 3].vertex[c % 3] = b;
+  // Those of b come first.
+  const auto at = [&](std::uint32_t place) { return corners.begin() + place; };
+  std::copy_backward(at(from.ring_begin), at(from.ring_begin + from.ring_size), at(begin + size));
+  if (begin != to.ring_begin) {
+    std::copy_n(at(to.ring_begin), to.ring_size, at(begin));
+    give_room(to.ring_begin, to.room());
   }
-  std::copy_n(corners.begin() + from.ring_begin, from.ring_size,
-              corners.begin() + to.ring_begin + to.ring_size);
-  to.ring_size = size & 0x3FFFFFFFu;
-  give_room(from.ring_begin, from.ring_size);
+  if (begin != from.ring_begin) give_room(from.ring_begin, from.room());
+  to.ring_begin = begin;
+  to.ring_size = size & 0xFFFFFFFu;
+  to.spare = static_cast<std::uint32_t>(std::countr_zero(room / std::bit_ceil(size))) & 3;
   from.ring_size = 0;
 }
 
-std::uint32_t CollapseMesh::take_room(std::uint32_t size) {
-  std::uint32_t& free = free_room_[static_cast<std::size_t>(std::bit_width(size - 1))];
-  auto begin = static_cast<std::uint32_t>(corners.size());
-  if (free == kInvalid) {
-    corners.resize(corners.size() + std::bit_ceil(size));
-  } else {
-    begin = free;
-    free = corners[begin];
-  }
+std::uint32_t CollapseMesh::take_room(std::uint32_t room) {
+  std::uint32_t& free = free_room_[static_cast<std::size_t>(std::countr_zero(room))];
+  if (free != kInvalid) return std::exchange(free, corners[free]);
+  const auto begin = static_cast<std::uint32_t>(corners.size());
+  corners.resize(begin + room);
   return begin;
 }
 
-void CollapseMesh::give_room(std::uint32_t begin, std::uint32_t size) {
-  if (size == 0) return;
-  std::uint32_t& free = free_room_[static_cast<std::size_t>(std::bit_width(size - 1))];
+void CollapseMesh::give_room(std::uint32_t begin, std::uint32_t room) {
+  std::uint32_t& free = free_room_[static_cast<std::size_t>(std::countr_zero(room))];
   corners[begin] = free;
   free = begin;
 }

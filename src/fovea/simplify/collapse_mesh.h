@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,10 +22,14 @@ struct CollapseFace {
 struct alignas(64) CollapseVertex {
   Vec3f position;                    ///< In units of the scene's diagonal, around the mesh's centre.
   std::uint32_t ring_begin = 0;      ///< Where its ring begins in CollapseMesh::corners.
-  std::uint32_t ring_size : 30 = 0;  ///< Corners in its ring; 0 without triangles.
+  std::uint32_t ring_size : 28 = 0;  ///< Corners in its ring; 0 without triangles.
+  std::uint32_t spare : 2 = 0;       ///< How often the room of its ring can be halved and still hold it.
   std::uint32_t locked : 1 = 0;      ///< Must stay where it is.
   std::uint32_t refused : 1 = 0;     ///< An edge at it was refused since something changed around it.
   VertexQuadric quadric;
+
+  /// Corners that its ring has room for: a power of two.
+  std::uint32_t room() const { return std::bit_ceil(std::uint32_t{ring_size}) << spare; }
 };
 
 /// An edge of the engine, with the half-edges of its triangles (a half-edge is the corner that it starts
@@ -126,7 +131,7 @@ struct CollapseMesh {
 
   /// Takes corner c out of the ring of its vertex.
   void unlink_corner(std::uint32_t c);
-  /// Adds the corners at a to those at b; a has none from then on. The faces' vertices stay.
+  /// Gives the corners at a to b; a has none from then on.
   void join_rings(std::uint32_t a, std::uint32_t b);
   /// Marks a face as removed; its corners must be out of the rings already.
   void kill_face(std::uint32_t f) {
@@ -137,9 +142,9 @@ struct CollapseMesh {
  private:
   void link_rings();
   void link_edges();
-  /// Room for rings comes in powers of two: a ring has room for at least bit_ceil(its size).
-  std::uint32_t take_room(std::uint32_t size);
-  void give_room(std::uint32_t begin, std::uint32_t size);
+  /// Where there is room for so many corners, a power of two.
+  std::uint32_t take_room(std::uint32_t room);
+  void give_room(std::uint32_t begin, std::uint32_t room);
 
   std::vector<std::uint32_t> free_room_;  // [log2 of room], first of a list linked through `corners`
 };

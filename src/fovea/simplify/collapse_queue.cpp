@@ -1,7 +1,6 @@
 #include "fovea/simplify/collapse_queue.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "fovea/base/prefetch.h"
 
@@ -18,7 +17,7 @@ void CollapseQueue::set(std::uint32_t item, double cost) {
   const std::uint16_t bucket = bucket_of(cost);
   if (bucket_[item] == bucket) return;
   bucket_[item] = bucket;
-  push(stacks_[bucket], item);
+  push(tops_[bucket], item);
   occupied_[bucket / 64] |= std::uint64_t{1} << (bucket % 64);
   lowest_word_ = std::min<std::size_t>(lowest_word_, bucket / 64);
 }
@@ -29,13 +28,13 @@ std::uint32_t CollapseQueue::first() {
     while (word != 0) {
       const auto bucket =
           static_cast<std::uint16_t>(64 * lowest_word_ + static_cast<std::size_t>(std::countr_zero(word)));
-      Stack& stack = stacks_[bucket];
-      while (stack.top != kInvalid) {
-        const Block& block = blocks_[stack.top];
-        const std::uint32_t item = block.items[stack.count - 1];
-        prefetch(&bucket_[block.items[stack.count > kLookAhead ? stack.count - 1 - kLookAhead : 0]]);
+      std::uint32_t& top = tops_[bucket];
+      while (top != 0) {
+        const Block& block = blocks_[top / kBlock];
+        const std::uint32_t place = top % kBlock, item = block[place];
+        prefetch(&bucket_[block[place > kLookAhead ? place - kLookAhead : 1]]);
         if (bucket_[item] == bucket) return item;
-        pop(stack);
+        pop(top);
       }
       word &= word - 1;
     }
@@ -43,27 +42,27 @@ std::uint32_t CollapseQueue::first() {
   return kInvalid;
 }
 
-void CollapseQueue::push(Stack& stack, std::uint32_t item) {
-  if (stack.top == kInvalid || stack.count == std::size(Block{}.items)) {
+void CollapseQueue::push(std::uint32_t& top, std::uint32_t item) {
+  if (top == 0 || top % kBlock == kBlock - 1) {
     std::uint32_t block = free_block_;
-    if (block == kInvalid) {
+    if (block == 0) {
       block = static_cast<std::uint32_t>(blocks_.size());
       blocks_.emplace_back();
     } else {
-      free_block_ = blocks_[block].below;
+      free_block_ = blocks_[block][0];
     }
-    blocks_[block].below = stack.top;
-    stack = {block, 0};
+    blocks_[block][0] = top;
+    top = block * kBlock;
   }
-  blocks_[stack.top].items[stack.count++] = item;
+  ++top;
+  blocks_[top / kBlock][top % kBlock] = item;
 }
 
-void CollapseQueue::pop(Stack& stack) {
-  if (--stack.count > 0) return;
-  const std::uint32_t emptied = stack.top;
-  stack.top = blocks_[emptied].below;
-  stack.count = static_cast<std::uint32_t>(std::size(Block{}.items));
-  blocks_[emptied].below = free_block_;
+void CollapseQueue::pop(std::uint32_t& top) {
+  if (--top % kBlock > 0) return;
+  const std::uint32_t emptied = top / kBlock;
+  top = blocks_[emptied][0];
+  blocks_[emptied][0] = free_block_;
   free_block_ = emptied;
 }
 

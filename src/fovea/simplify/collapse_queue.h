@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -16,8 +17,9 @@ namespace fovea {
 /// a change touches one place in memory. 2 bytes per item and 4 per entry.
 class CollapseQueue {
  public:
-  explicit CollapseQueue(std::size_t items) : bucket_(items, kNone), stacks_(kBuckets) {
-    blocks_.reserve(items / 16);  // not touched before it is needed
+  explicit CollapseQueue(std::size_t items) : bucket_(items, kNone), tops_(kBuckets) {
+    blocks_.reserve(items / (kBlock - 1) + kBuckets / 12);  // what models need; not touched before that
+    blocks_.emplace_back();
   }
 
   bool contains(std::uint32_t item) const { return bucket_[item] != kNone; }
@@ -39,23 +41,19 @@ class CollapseQueue {
   static constexpr std::uint16_t kNone = 0xFFFF;
   static constexpr std::size_t kBuckets = 0x8000;  // the sign bit is never set
 
-  /// A piece of a stack: blocks are handed on from emptied stacks to growing ones.
-  struct Block {
-    std::uint32_t below = kInvalid;  // next block of the same stack, or of the list of free ones
-    std::uint32_t items[31];
-  };
-  struct Stack {
-    std::uint32_t top = kInvalid;  // block
-    std::uint32_t count = 0;       // entries in the top block
-  };
+  /// A piece of a stack, one cache line: the place of the entry below it, then its own entries. Blocks are
+  /// handed on from emptied stacks to growing ones. An entry's place is that of its block times kBlock, plus
+  /// its place there; the first block is not used, so that 0 is none.
+  static constexpr std::uint32_t kBlock = 16;
+  using Block = std::array<std::uint32_t, kBlock>;
 
-  void push(Stack& stack, std::uint32_t item);
-  void pop(Stack& stack);
+  void push(std::uint32_t& top, std::uint32_t item);
+  void pop(std::uint32_t& top);
 
   std::vector<std::uint16_t> bucket_;  // [#items]
-  std::vector<Stack> stacks_;          // [kBuckets]
+  std::vector<std::uint32_t> tops_;    // [kBuckets], place of the last entry, or 0
   std::vector<Block> blocks_;
-  std::uint32_t free_block_ = kInvalid;
+  std::uint32_t free_block_ = 0;                // first of a list, or 0
   std::uint64_t occupied_[kBuckets / 64] = {};  // stacks that are not empty
   std::size_t lowest_word_ = kBuckets / 64;     // no occupied bucket below this word
 };

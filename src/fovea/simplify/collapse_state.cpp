@@ -606,7 +606,10 @@ void Builder::add_edge_quadrics() {
 void Builder::price_components() {
   state_.components = find_components(state_.mesh);
   state_.vanish.resize(state_.components.count());
-  if (state_.vanish.size() < 2) return;  // the last one never vanishes
+  if (state_.vanish.size() < 2) {  // the last one never vanishes
+    state_.components.faces = std::vector<std::uint32_t>();
+    return;
+  }
   for (std::size_t i = 0; i < state_.vanish.size(); ++i) {
     Box box;
     double weight = 0;

@@ -101,11 +101,11 @@ struct CollapseState {
 
   CollapseMesh mesh;
   std::vector<Channel> channels;
-  std::vector<std::uint32_t> columns;  // of the channels: [#F × 3][#channels], then [#V][#channels]
-  std::vector<MeshSlot> slots;         // [#meshes]
-  std::vector<VertexId> mesh_vertex;   // [#V], in its mesh
-  std::vector<FaceId> mesh_face;       // [#F], in its mesh
-  FaceComponents components;
+  std::vector<std::uint32_t> columns;   // of the channels: [#F × 3][#channels], then [#V][#channels]
+  std::vector<MeshSlot> slots;          // [#meshes]
+  std::vector<VertexId> mesh_vertex;    // [#V], in its mesh
+  std::vector<FaceId> mesh_face;        // [#F], in its mesh
+  FaceComponents components;            // without their faces if there is only one
   std::vector<VanishCandidate> vanish;  // [#components]
 
   /// Faces of a mesh, those that are gone among them.

@@ -104,7 +104,6 @@ void CollapseStepper::give_ring(std::uint32_t a, std::uint32_t b, KeptFor&& kept
     const CornerView at_c = mesh_.view(c);
     take_over(c, at_c.next);
     take_over(CollapseMesh::previous(c), at_c.previous);
-    mesh_.faces[c / 3].vertex[c % 3] = b;
   });
   mesh_.join_rings(a, b);
 }

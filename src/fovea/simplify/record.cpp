@@ -60,7 +60,13 @@ class Replayed {
 
 /// The triangles that are left, with the vertices and values that theirs have become.
 void Replayed::gather_faces(TriMesh& out) {
-  for (AttributeLayer& layer : out.layers) layer.corner_value.clear();
+  const auto left = static_cast<std::size_t>(std::count(face_gone_.begin(), face_gone_.end(), false));
+  out.triangles.reserve(left);
+  out.face_part.reserve(left);
+  for (AttributeLayer& layer : out.layers) {
+    layer.corner_value = std::vector<ValueId>();  // with its room
+    layer.corner_value.reserve(3 * left);
+  }
   for (std::size_t f = 0; f < source_.face_count(); ++f) {
     if (face_gone_[f]) continue;
     std::array<VertexId, 3> t = source_.triangles[f];

@@ -192,6 +192,32 @@ void append(CollapseRecord& all, CollapseRecord&& batch, const std::vector<std::
   take(all.floats, std::move(batch.floats));
 }
 
+/// A copy in which surfaces with triangles are empty: for those that take their place. Both at once would
+/// take more memory than the engine does.
+Model without_surfaces(const Model& model) {
+  std::vector<Mesh> meshes;
+  for (const Mesh& mesh : model.meshes) {
+    const bool is_kept = mesh.surface.face_count() == 0;
+    meshes.push_back({mesh.name, is_kept ? mesh.surface : TriMesh(), mesh.morph_weights, mesh.json});
+  }
+  return {model.scenes,
+          model.default_scene,
+          model.nodes,
+          std::move(meshes),
+          model.materials,
+          model.textures,
+          model.samplers,
+          model.images,
+          model.skins,
+          model.animations,
+          model.cameras,
+          model.extensions_used,
+          model.extensions_required,
+          model.json,
+          model.carried_accessors,
+          model.carried_buffer_views};
+}
+
 }  // namespace
 
 void check(const Importance& importance) {
@@ -331,7 +357,7 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
     levels.push_back(replay(batch.meshes, outcome.record, outcome.record.steps.size()));
     append(result.record, std::move(outcome.record), batch.mesh_index);
   }
-  result.model = model;  // not before: while the engine runs memory is scarce
+  result.model = without_surfaces(model);  // not before: while the engine runs memory is scarce
   for (std::size_t i = 0; i < batches.size(); ++i) {
     for (std::size_t k = 0; k < levels[i].size(); ++k)
       result.model.meshes[batches[i].mesh_index[k]].surface = std::move(levels[i][k]);
@@ -346,7 +372,7 @@ Model replay(const Model& model, const CollapseRecord& record, std::size_t step_
   std::vector<const TriMesh*> sources;
   for (const Mesh& mesh : model.meshes) sources.push_back(&mesh.surface);
   std::vector<TriMesh> surfaces = replay(sources, record, step_count);
-  Model level = model;
+  Model level = without_surfaces(model);
   for (std::size_t m = 0; m < surfaces.size(); ++m) {
     // As `simplify` does it: what has no triangles is left as it is.
     if (sources[m]->face_count() > 0) level.meshes[m].surface = std::move(surfaces[m]);
