@@ -78,8 +78,8 @@ std::size_t odd_edges(const std::vector<Vec3f>& corners) {
   std::map<std::pair<Point, Point>, int> count;
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const Vec3f a = corners[c], b = corners[next_corner(c)];
-    const auto [low, high] = std::minmax(Point{a.x, a.y, a.z}, Point{b.x, b.y, b.z});
-    ++count[{low, high}];
+    const Point from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
+    ++count[std::minmax(from, to)];
   }
   return static_cast<std::size_t>(
       std::ranges::count_if(count, [](const auto& e) { return e.second % 2 == 1; }));
