@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
 
 #include "fovea/base/error.h"
 #include "fovea/io/gltf_read.h"
+#include "support/reading.h"
 
 namespace fovea {
 namespace {
@@ -22,9 +22,9 @@ const std::map<std::string, std::string> kMalformed = {
 class GltfCorpus : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* folder = std::getenv("FOVEA_DATA");
+    const auto folder = test::corpus_folder();
     if (!folder) GTEST_SKIP() << "FOVEA_DATA does not name the corpus";
-    folder_ = folder;
+    folder_ = *folder;
   }
 
   Model read(const fs::path& path, Context& context) const {

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -8,6 +7,7 @@
 #include "fovea/io/read.h"
 #include "io/gltf_written.h"
 #include "support/corner_soup.h"
+#include "support/reading.h"
 
 namespace fovea {
 namespace {
@@ -21,10 +21,10 @@ const std::set<std::string> kRepaired = {};
 class GltfWriteCorpus : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* folder = std::getenv("FOVEA_DATA");
+    const auto folder = test::corpus_folder();
     if (!folder) GTEST_SKIP() << "FOVEA_DATA does not name the corpus";
     for (const char* part : {"textured", "animated", "conformance"}) {
-      for (const auto& entry : fs::recursive_directory_iterator(fs::path(folder) / part)) {
+      for (const auto& entry : fs::recursive_directory_iterator(*folder / part)) {
         const auto extension = entry.path().extension();
         if (extension == ".glb" || extension == ".gltf") load(entry.path());
       }

@@ -81,11 +81,18 @@ void expect_error(const Call& call, ErrorKind kind, const std::string& place,
   EXPECT_NE(error->message().find(message), std::string::npos) << error->what();
 }
 
-/// A file of the corpus, whose folder the environment names; none if it does not.
-inline std::optional<std::filesystem::path> corpus_file(const std::string& name) {
+/// The folder of the corpus, if the environment names one.
+inline std::optional<std::filesystem::path> corpus_folder() {
   const char* folder = std::getenv("FOVEA_DATA");
+  if (folder == nullptr || *folder == '\0') return {};
+  return folder;
+}
+
+/// A file of the corpus, if there is one.
+inline std::optional<std::filesystem::path> corpus_file(const std::string& name) {
+  const auto folder = corpus_folder();
   if (!folder) return {};
-  return std::filesystem::path(folder) / name;
+  return *folder / name;
 }
 
 /// The smallest PNG: one white pixel, RGB.
