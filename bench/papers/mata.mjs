@@ -14,7 +14,7 @@ function levels(shop, name, at, settings) {
       '--factor', `${factor}`, '--error', `${error}`);
     const draw = (pass) => shop.draw(out, `${name}-${threshold}-${100 * factor}-${pass}`, ...look, '--pass', pass);
     const [judged] = shop.compared(bunny[1], [out], '--view-size', '256');
-    return { threshold, factor, report, file: bunny[1], mesh: draw('triangle'), surface: draw('lit'), judged };
+    return { threshold, factor, report, file: bunny[1], mesh: draw('triangle'), surface: () => draw('lit'), judged };
   });
 }
 
@@ -26,7 +26,7 @@ function figure3(shop) {
   shop.fovea('focus', none.file, '-o', heat, '--force', '--as', 'heat', '--at', '75,60', '--law', 'linear', '--threshold', '255');
   const column = (name) => found.map((level) => level[name]);
   return table(['the scan', 'distance from the focus', 'f = 0', 'f = 0.05', 'f = 0.05, as a surface'], [
-    [shop.draw(none.file, 'mata-3-scan', ...look), shop.draw(heat, 'mata-3-heat', ...look, '--pass', 'base-color'), ...column('mesh'), mild.surface],
+    [shop.draw(none.file, 'mata-3-scan', ...look), shop.draw(heat, 'mata-3-heat', ...look, '--pass', 'base-color'), ...column('mesh'), mild.surface()],
     ['', '', ...column('report').map((r) => `${count(r.result.triangles)} triangles`), ''],
   ]);
 }
@@ -37,7 +37,7 @@ function figure5(shop) {
   if (!found) return undefined;
   return table(['threshold:', 'f = 0', 'triangles:', 'as a surface', 'f = 0.05', 'triangles:', 'PSNR f = 0 / 0.05, dB:'], thresholds.map((threshold) => {
     const [none, mild] = found.filter((l) => l.threshold === threshold);
-    return [threshold, none.mesh, count(none.report.result.triangles), none.surface, mild.mesh, count(mild.report.result.triangles),
+    return [threshold, none.mesh, count(none.report.result.triangles), none.surface(), mild.mesh, count(mild.report.result.triangles),
       `${fixed(none.judged.lit.psnr)} / ${fixed(mild.judged.lit.psnr)}`];
   }));
 }
