@@ -1,11 +1,13 @@
-// Levels that follow a camera, as Markdown: flights.mjs FOVEA MODEL... flies each model by every rule and prints
-// how its frames look and what they take. Minutes for each model.
+// Levels that follow a camera, as Markdown: flights.mjs [--only pictures|times] FOVEA MODEL... flies each model by every
+// rule and prints how its frames look, and then what they take. Minutes for each model.
 import { execFileSync } from 'node:child_process';
 import { basename } from 'node:path';
 
-const [fovea, ...models] = process.argv.slice(2);
-if (!fovea || models.length === 0) {
-  console.error('usage: flights.mjs FOVEA MODEL...');
+const words = process.argv.slice(2);
+const only = words[0] === '--only' ? words.splice(0, 2)[1] : undefined;
+const [fovea, ...models] = words;
+if (!fovea || models.length === 0 || ![undefined, 'pictures', 'times'].includes(only)) {
+  console.error('usage: flights.mjs [--only pictures|times] FOVEA MODEL...');
   process.exit(2);
 }
 const clusters = (method, matching) => ['--select', 'clusters', '--clusters', '64', '--method', method, '--matching', matching];
@@ -24,27 +26,34 @@ const fly = (model, words) =>
 const name = (model) => basename(model).replace(/\.[^.]*$/, '');
 const db = (x) => (x === null ? 'same' : x.toFixed(2));
 
-console.log('| model | rule | ratio | triangles | cracks | PSNR mean | worst | MS-SSIM mean | worst | FLIP mean | worst |');
-console.log('|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|');
-for (const model of models) {
-  for (const [rule, words] of rules) {
-    for (const r of fly(model, ['--device', 'cpu', ...words]).ratios) {
-      console.log(`| ${name(model)} | ${rule} | ${r.ratio} | ${r.triangles} | ${r.cracks} | ${db(r.psnr)} | ${db(r.psnr_worst)} ` +
-        `| ${r.ms_ssim.toFixed(4)} | ${r.ms_ssim_worst.toFixed(4)} | ${r.flip.toFixed(4)} | ${r.flip_worst.toFixed(4)} |`);
+function pictures() {
+  console.log('| model | rule | ratio | triangles | cracks | PSNR mean | worst | MS-SSIM mean | worst | FLIP mean | worst |');
+  console.log('|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|');
+  for (const model of models) {
+    for (const [rule, words] of rules) {
+      for (const r of fly(model, ['--device', 'cpu', ...words]).ratios) {
+        console.log(`| ${name(model)} | ${rule} | ${r.ratio} | ${r.triangles} | ${r.cracks} | ${db(r.psnr)} | ${db(r.psnr_worst)} ` +
+          `| ${r.ms_ssim.toFixed(4)} | ${r.ms_ssim_worst.toFixed(4)} | ${r.flip.toFixed(4)} | ${r.flip_worst.toFixed(4)} |`);
+      }
     }
   }
 }
 
-console.log('\n| model | device | ratio | all triangles, ms | CPU, ms | GPU, ms | all / CPU | all / GPU | CPU / GPU |');
-console.log('|---|---|--:|--:|--:|--:|--:|--:|--:|');
-for (const model of models) {
-  for (const spread of ['1', '10']) {
-    const flight = fly(model, ['--judge-every', '0', '--spread', spread]);
-    for (const r of flight.ratios) {
-      const ms = (x) => (x === null ? '-' : x.toFixed(1));
-      const by = (a, b) => (a === null || b === null ? '-' : (a / b).toFixed(2));
-      console.log(`| ${name(model)}${spread === '1' ? '' : `, a level every ${spread} frames`} | ${flight.device ?? '-'} | ${r.ratio} ` +
-        `| ${ms(r.full_ms)} | ${ms(r.cpu_ms)} | ${ms(r.gpu_ms)} | ${by(r.full_ms, r.cpu_ms)} | ${by(r.full_ms, r.gpu_ms)} | ${by(r.cpu_ms, r.gpu_ms)} |`);
+function times() {
+  console.log('\n| model | device | ratio | all triangles, ms | CPU, ms | GPU, ms | all / CPU | all / GPU | CPU / GPU |');
+  console.log('|---|---|--:|--:|--:|--:|--:|--:|--:|');
+  for (const model of models) {
+    for (const spread of ['1', '10']) {
+      const flight = fly(model, ['--judge-every', '0', '--spread', spread]);
+      for (const r of flight.ratios) {
+        const ms = (x) => (x === null ? '-' : x.toFixed(1));
+        const by = (a, b) => (a === null || b === null ? '-' : (a / b).toFixed(2));
+        console.log(`| ${name(model)}${spread === '1' ? '' : `, a level every ${spread} frames`} | ${flight.device ?? '-'} | ${r.ratio} ` +
+          `| ${ms(r.full_ms)} | ${ms(r.cpu_ms)} | ${ms(r.gpu_ms)} | ${by(r.full_ms, r.cpu_ms)} | ${by(r.full_ms, r.gpu_ms)} | ${by(r.cpu_ms, r.gpu_ms)} |`);
+      }
     }
   }
 }
+
+if (only !== 'times') pictures();
+if (only !== 'pictures') times();

@@ -10,9 +10,6 @@ namespace fovea::bench {
 
 namespace {
 
-/// How far what faces like a triangle may be from it, of the diagonal.
-constexpr double kNear = 0.01;
-
 bool is_open(const std::array<int, 2>& edge) { return edge[0] + edge[1] == 1; }
 bool is_non_manifold(const std::array<int, 2>& edge) { return edge[0] > 1 || edge[1] > 1; }
 
@@ -43,7 +40,7 @@ std::size_t count_doubled(const TriMesh& mesh) {
 }  // namespace
 
 LevelCheck::LevelCheck(const Model& original, const MultiTessellation& levels, const LiveLevel& live)
-    : levels_(levels), live_(live) {
+    : levels_(levels), live_(live), scales_(largest_scales(original)) {
   for (const Mesh& mesh : original.meshes) {
     surfaces_.push_back(surface_of(mesh.surface));
     shown_.push_back(mesh.surface.triangles);
@@ -78,6 +75,7 @@ LevelFaults LevelCheck::update() {
     }
   }
   now_.cracks = count_cracks();
+  now_.flipped = now_.turned > 0 ? count_flipped() : 0;
   return now_;
 }
 
@@ -120,7 +118,7 @@ std::uint32_t LevelCheck::triangle(std::uint32_t mesh, const Corners& corners) {
   std::ranges::sort(v);
   made.vertices = vertices_numbers_.insert(v);
   times_.resize(vertices_numbers_.size());
-  look_at(made, mesh, corners);
+  made.turned = error_that_turns(mesh, corners);
   return number;
 }
 
@@ -130,15 +128,16 @@ std::uint32_t LevelCheck::edge(std::uint32_t a, std::uint32_t b) {
   return number;
 }
 
-void LevelCheck::look_at(Triangle& triangle, std::uint32_t mesh, const Corners& corners) const {
+float LevelCheck::error_that_turns(std::uint32_t mesh, const Corners& corners) const {
   const Surface& surface = surfaces_[mesh];
   const std::array<std::uint32_t, 3> t{corners[0].value, corners[1].value, corners[2].value};
-  const Vec3d center = (surface.position(t[0]) + surface.position(t[1]) + surface.position(t[2])) / 3.0;
-  const Vec3d n = normal(surface, t);
+  const Vec3d a = surface.position(t[0]), b = surface.position(t[1]), c = surface.position(t[2]);
+  const Vec3d center = (a + b + c) / 3.0, n = normal(surface, t);
   const std::uint32_t before = nearest_[mesh].nearest(center).triangle;
-  triangle.turned = dot(n, normal(surface, surface.triangles[before])) < -0.5;
-  triangle.alone =
-      triangle.turned && !facing_[mesh].nearest({center, n, kNear * diagonal(surface), 0}).has_value();
+  if (dot(n, normal(surface, surface.triangles[before])) >= -0.5) return 0;
+  const double height = length(cross(b - a, c - a)) / std::max({length(b - a), length(c - b), length(a - c)});
+  const auto hit = facing_[mesh].nearest({center, n, height, 0});
+  return static_cast<float>(scales_[mesh] / 2 * (hit ? hit->distance : height));
 }
 
 void LevelCheck::add(const Triangle& triangle, int times) {
@@ -154,8 +153,7 @@ void LevelCheck::add(const Triangle& triangle, int times) {
   now_.doubled -= static_cast<std::size_t>(std::max(all - 1, 0));
   all += times;
   now_.doubled += static_cast<std::size_t>(std::max(all - 1, 0));
-  if (triangle.turned) now_.turned += static_cast<std::size_t>(times);
-  if (triangle.alone) now_.alone += static_cast<std::size_t>(times);
+  if (triangle.turned > 0) now_.turned += static_cast<std::size_t>(times);
 }
 
 std::size_t LevelCheck::count_cracks() {
@@ -176,6 +174,17 @@ std::size_t LevelCheck::count_cracks() {
     counted[e] = 1;
   }
   return cracks;
+}
+
+std::size_t LevelCheck::count_flipped() {
+  float error = 0;
+  for (std::size_t s = 0; s < levels_.step_count(); ++s)
+    if (live_.cut()[s] != 0) error = std::max(error, levels_.error[s]);
+  std::size_t flipped = 0;
+  for (std::uint32_t m = 0; m < shown_.size(); ++m) {
+    for (const Corners& t : shown_[m]) flipped += t[0].valid() && triangles_[triangle(m, t)].turned > error;
+  }
+  return flipped;
 }
 
 }  // namespace fovea::bench

@@ -22,7 +22,10 @@ struct LevelFaults {
   std::size_t non_manifold = 0;  ///< Edges of three triangles or more, or of two that disagree in direction.
   std::size_t doubled = 0;       ///< Triangles with the vertices of another.
   std::size_t turned = 0;  ///< Triangles that face more than 120° away from the nearest of the original.
-  std::size_t alone = 0;   ///< Of these, those like which nothing faces within 1 % of the mesh's diagonal.
+  /// Of these, those that the level's error does not allow for. Corners may be off by it to either side, so
+  /// it turns slivers up to twice as high, and walls up to twice as thick have what faces like the triangle
+  /// behind.
+  std::size_t flipped = 0;
 };
 
 /// Looks at a level that goes from cut to cut, each time only at the triangles that have changed. Levels of a
@@ -44,17 +47,19 @@ class LevelCheck {
     std::array<std::uint8_t, 3>
         forward{};               ///< Whether it goes along each from the lower vertex to the higher.
     std::uint32_t vertices = 0;  ///< In `times_`.
-    bool turned = false, alone = false;
+    float turned = 0;  ///< The least error that allows for it, if it is turned; else 0. In scene units.
   };
   std::uint32_t triangle(std::uint32_t mesh, const Corners& corners);
   std::uint32_t edge(std::uint32_t a, std::uint32_t b);
-  void look_at(Triangle& triangle, std::uint32_t mesh, const Corners& corners) const;
+  float error_that_turns(std::uint32_t mesh, const Corners& corners) const;
   void add(const Triangle& triangle, int times);
   std::size_t count_cracks();
+  std::size_t count_flipped();
 
   const MultiTessellation& levels_;
   const LiveLevel& live_;
   std::vector<Surface> surfaces_;                      // [#meshes]
+  std::vector<double> scales_;                         // [#meshes], as nodes show them
   std::vector<ClosestPoint> nearest_;                  // [#meshes]
   std::vector<FacingPoint> facing_;                    // [#meshes]
   std::vector<std::array<std::uint32_t, 2>> borders_;  // edges of the original of one triangle, three, ...

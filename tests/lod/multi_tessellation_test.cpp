@@ -65,6 +65,32 @@ TEST(MultiTessellation, FlatPartsLoseNothing) {
   for (const float error : model.levels.error) EXPECT_LT(error, 3e-4f);
 }
 
+TEST(MultiTessellation, TrianglesThatAreUpsideDownAreOffByHalfTheirHeight) {
+  // An edge inside the grid collapses. In its plane no point is off, wherever the vertex goes that is left:
+  // to the other end, or across the triangles around it, which turns some that are about an eighth high.
+  TriMesh mesh = test::grid(8, 8);
+  mesh.layers.clear();
+  const VertexId removed{40u}, kept{41u};
+  CollapseRecord record;
+  record.triangles_before = mesh.face_count();
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    const auto& t = mesh.triangles[f];
+    if (std::ranges::count(t, removed) + std::ranges::count(t, kept) == 2)
+      record.removed_faces.push_back(FaceId{f});
+  }
+  ASSERT_EQ(record.removed_faces.size(), 2u);
+  CollapseStep& step = record.steps.emplace_back();
+  step.removed = removed;
+  step.kept = kept;
+  step.faces_end = 2;
+  const Model model = test::model_of(mesh);
+  Context context;
+  EXPECT_LT(make_multi_tessellation(model, record, context).error[0], 1e-6f);
+  step.moved = true;
+  step.position = Vec3f(0.82f, 0.55f, 0);
+  EXPECT_GT(make_multi_tessellation(model, record, context).error[0], 1.0f / 32);
+}
+
 TEST(MultiTessellation, ErrorsAreOfTheLargestInstance) {
   Model model = test::model_of(test::wavy_grid(20, 20, 0.1));
   const Leveled small = leveled(model, 100);

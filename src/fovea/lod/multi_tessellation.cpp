@@ -10,6 +10,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/lod/step_order.h"
 #include "fovea/surface/closest_point.h"
+#include "fovea/surface/facing_point.h"
 #include "fovea/surface/half_edges.h"
 
 namespace fovea {
@@ -19,6 +20,8 @@ namespace {
 /// What errors are raised by, for what lies between the points that are looked at: measured densely they were
 /// at most 1.2 times as large (docs/levels.md).
 constexpr double kMargin = 1.25;
+/// Faces whose normals are farther apart than this face away from each other: the cosine of 120°.
+constexpr double kAway = -0.5;
 /// Steps whose points look for the original together, in parallel.
 constexpr std::size_t kBlock = 1 << 14;
 
@@ -29,7 +32,10 @@ class ErrorMeter {
       : original_(original), levels_(levels), context_(context), order_(original, levels) {
     choose_points();
     for (const Mesh& mesh : original.meshes) surfaces_.push_back(surface_of(mesh.surface));
-    for (const Surface& surface : surfaces_) nearest_.emplace_back(surface);
+    for (const Surface& surface : surfaces_) {
+      nearest_.emplace_back(surface);
+      facing_.emplace_back(surface, std::vector<std::uint32_t>(surface.triangles.size()));
+    }
     scales_ = largest_scales(original);
   }
 
@@ -51,6 +57,7 @@ class ErrorMeter {
   std::vector<double> scales_;  // [#meshes]
   std::vector<Surface> surfaces_;
   std::vector<ClosestPoint> nearest_;
+  std::vector<FacingPoint> facing_;
 
   // Points of the original, its vertices and the middles of its edges, and those that each face stands for.
   std::vector<Vec3d> points_at_;                         // [#points]
@@ -71,12 +78,15 @@ class ErrorMeter {
   };
   std::vector<Place> places_;
 
-  /// A point of a new triangle.
+  /// A point of a new triangle; of its middle the normal and the height over the longest side, too.
   struct Sample {
     Vec3d point;
     std::uint32_t mesh = 0, step = 0;
+    Vec3d normal;
+    double height = 0;
   };
   std::vector<Sample> samples_;
+  double distance_of(const Sample& sample) const;
 };
 
 /// Every vertex and the middle of every edge, each with one of its faces; of edges that are longer than the
@@ -173,7 +183,9 @@ double ErrorMeter::old_extent() const {
 /// Notes the points of new triangles that look for the original.
 void ErrorMeter::add_samples(std::size_t s) {
   const std::uint32_t mesh = levels_.record.steps[s].mesh, b = order_.kept();
-  const auto add = [&](Vec3d p) { samples_.push_back({p, mesh, static_cast<std::uint32_t>(s)}); };
+  const auto add = [&](Vec3d p) -> Sample& {
+    return samples_.emplace_back(Sample{p, mesh, static_cast<std::uint32_t>(s), {}});
+  };
   const Vec3d at_b = order_.position(b);
   add(at_b);
   for (const std::uint32_t v : levels_.corners_of(s)) {
@@ -182,15 +194,34 @@ void ErrorMeter::add_samples(std::size_t s) {
   }
   for (const std::uint32_t f : order_.new_faces()) {
     const auto& [i, j, k] = order_.faces()[f];
-    add((order_.position(i) + order_.position(j) + order_.position(k)) / 3.0);
+    const Vec3d p = order_.position(i), q = order_.position(j), r = order_.position(k);
+    const Vec3d n = cross(q - p, r - p);
+    Sample& middle = add((p + q + r) / 3.0);
+    middle.normal = normalized(n);
+    const double longest = std::max({length(q - p), length(r - q), length(p - r)});
+    middle.height = longest > 0 ? length(n) / longest : 0;
   }
+}
+
+/// From the original. A triangle that faces away from that is off by half of its height at least, as if its
+/// tip had gone from one side to the other, or by half of the way to what faces like it: so no error hides
+/// that a triangle is upside down.
+double ErrorMeter::distance_of(const Sample& sample) const {
+  const ClosestPoint::Hit hit = nearest_[sample.mesh].nearest(sample.point);
+  if (sample.height <= 2 * hit.distance) return hit.distance;
+  const Surface& surface = surfaces_[sample.mesh];
+  const auto& [a, b, c] = surface.triangles[hit.triangle];
+  const Vec3d at_a = surface.position(a);
+  const Vec3d normal = normalized(cross(surface.position(b) - at_a, surface.position(c) - at_a));
+  if (dot(normal, sample.normal) >= kAway) return hit.distance;
+  const auto facing = facing_[sample.mesh].nearest({sample.point, sample.normal, sample.height, 0});
+  return std::max(hit.distance, (facing ? facing->distance : sample.height) / 2);
 }
 
 void ErrorMeter::measure_samples() {
   std::vector<float> distance(samples_.size());
   parallel_for_or_throw(context_, samples_.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      distance[i] = static_cast<float>(nearest_[samples_[i].mesh].nearest(samples_[i].point).distance);
+    for (std::size_t i = begin; i < end; ++i) distance[i] = static_cast<float>(distance_of(samples_[i]));
   });
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     float& error = levels_.error[samples_[i].step];

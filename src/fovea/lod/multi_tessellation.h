@@ -61,9 +61,10 @@ struct MultiTessellation {
 /// Errors are measured both ways, for the rest pose. From the original: its vertices and the middles of its
 /// edges (of long ones more points) are kept with the triangle that stands for them, and look for the nearest
 /// of the new ones when a step replaces that. To the original: three points of each new edge, the middle of
-/// each new triangle, and the vertex between them look for the nearest point of the whole mesh. A quarter is
-/// added for what lies between the points. What vanishes altogether counts with its diameter. Lengths are
-/// those of the largest instance of a mesh.
+/// each new triangle, and the vertex between them look for the nearest point of the whole mesh. A triangle
+/// that faces away from that counts with half of its height, or half of the way to what faces like it. A
+/// quarter is added for what lies between the points. What vanishes altogether counts with its diameter.
+/// Lengths are those of the largest instance of a mesh.
 ///
 /// O(#F log #F), some 20 µs for each triangle, partly parallel. Throws Error(usage) if the record is of
 /// another model, Error(cancelled).
