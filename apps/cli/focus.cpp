@@ -13,6 +13,7 @@
 #include "fovea/render/render.h"
 #include "fovea/saliency/attention.h"
 #include "fovea/saliency/attention_law.h"
+#include "fovea/saliency/attention_region.h"
 #include "fovea/simplify/simplify.h"
 #include "input.h"
 #include "report.h"
@@ -36,7 +37,8 @@ class FocusVerb : public Verb {
   VerbText text() const override {
     return {"focus",
             "keep what somebody looks at, and let the rest go",
-            "Reads a model, a camera and where somebody looks in its picture, and writes the model with full "
+            "Reads a model and where somebody looks, in a camera's picture or in the scene, and writes it "
+            "with full "
             "detail "
             "there and less with the distance from it: all triangles keep to the error that is allowed where "
             "they "
@@ -53,7 +55,9 @@ class FocusVerb : public Verb {
               "--error 0.02",
               "As sharp as the eye sees there, and nobody looks at (40, 100)."},
              {"fovea focus car.glb -o door.npy --at 120,130 --on-surface",
-              "Importance for \"fovea simplify --importance door.npy\", for views from everywhere."}}};
+              "Importance for \"fovea simplify --importance door.npy\", for views from everywhere."},
+             {"fovea focus city.glb -o square.glb --sphere 120,0,-40,25 --factor 0 --error 0.01",
+              "As it is within 25 units of a place of the scene, up to 1 % of the diagonal off elsewhere."}}};
   }
 
   void declare(Arguments& arguments) override {
@@ -64,7 +68,12 @@ class FocusVerb : public Verb {
           "Where somebody looks: X,Y in pixels of the picture from its top left, or X,Y,WEIGHT, by which "
           "distances from it are divided; with a negative weight nobody looks there. May be given many "
           "times.",
-          &at_, "x,y[,weight]"}});
+          &at_, "x,y[,weight]"},
+         {"sphere",
+          "A ball of the scene that is looked at closely, with --at or instead: its middle and its radius. "
+          "Triangles that reach into it keep to --factor of the error. May be given many times.",
+          &sphere_, "x,y,z,radius"},
+         {"box", "The same for a box: two opposite corners.", &box_, "x,y,z,x,y,z"}});
     arguments.add("Attention", describe(attention_));
     arguments.add("Attention", describe(law_));
     arguments.add(
@@ -93,6 +102,9 @@ class FocusVerb : public Verb {
     arguments.add("Output", describe(write_options_));
     arguments.add("Limits", describe(read_options_));
     need_format(arguments, write_options_);
+    arguments.need({{"law", "threshold", "neglect", "labels", "visible-only", "on-surface"}, "--at", [&] {
+                      return !at_.empty();
+                    }});
     arguments.need({{"target"}, "--eye", [&] { return !eye_.empty(); }});
     arguments.need({{"viewing-distance"}, "--law acuity", [&] { return law_.law == AttentionLaw::acuity; }});
     arguments.need({{"labels"}, "the picture, not --on-surface", [&] { return !attention_.on_surface; }});
@@ -148,13 +160,25 @@ class FocusVerb : public Verb {
       if (kind_ == FocusOutput::picture) return check_image_output(path, write_options_.force);
       fovea::check_output(path, write_options_);
     });
-    if (at_.empty()) {
+    if (at_.empty() && sphere_.empty() && box_.empty()) {
       throw Error(ErrorKind::usage, "nobody looks anywhere", "--at",
-                  "give a pixel of the picture, for example --at 128,128 for its middle");
+                  "give a pixel of the picture, for example --at 128,128 for its middle, or a --sphere or "
+                  "--box of the scene");
     }
     for (const std::string& text : at_) {
       const std::vector<double> numbers = parse_numbers("at", text, 2, 3);
       foci_.push_back({numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 1.0});
+    }
+    for (const std::string& text : sphere_) {
+      const std::vector<double> n = parse_numbers("sphere", text, 4, 4);
+      if (!(n[3] > 0)) throw Error(ErrorKind::usage, "the radius must be larger than 0", "--sphere " + text);
+      regions_.spheres.push_back({{n[0], n[1], n[2]}, n[3]});
+    }
+    for (const std::string& text : box_) {
+      const std::vector<double> n = parse_numbers("box", text, 6, 6);
+      Box& box = regions_.boxes.emplace_back();
+      box.add({n[0], n[1], n[2]});
+      box.add({n[3], n[4], n[5]});
     }
     const int cameras = !view_.empty() + !eye_.empty() + !camera_.empty();
     if (cameras > 1)
@@ -217,11 +241,25 @@ class FocusVerb : public Verb {
     const RenderScene scene = make_render_scene(model, pose, session.context, nullptr,
                                                 draws ? SceneTextures::all : SceneTextures::none);
     camera_view_ = view_of(model, pose, scene.sphere);
-    const auto size = static_cast<int>(attention_.view_size);
-    const double reach = attention_reach(law_, camera_view_, size);
-    const AttentionLabels labels =
-        attention_labels(model, scene, camera_view_, foci_, attention_, reach, session.context);
-    std::vector<VertexField> shares = allowed_shares(labels, camera_view_, size, law_);
+    std::vector<VertexField> shares;
+    if (foci_.empty()) {
+      for (const Mesh& mesh : model.meshes) shares.emplace_back(mesh.surface.vertex_count(), 1.0f);
+    } else {
+      const auto size = static_cast<int>(attention_.view_size);
+      const double reach = attention_reach(law_, camera_view_, size);
+      const AttentionLabels labels =
+          attention_labels(model, scene, camera_view_, foci_, attention_, reach, session.context);
+      shares = allowed_shares(labels, camera_view_, size, law_);
+    }
+    if (!regions_.empty() &&
+        attend_regions(model, pose, regions_, static_cast<float>(law_.factor), shares) == 0) {
+      const Box box = bounds(model);
+      throw Error(ErrorKind::usage, "no triangle reaches into the region",
+                  sphere_.empty() ? "--box" : "--sphere",
+                  fmt::format("the model lies from {},{},{} to {},{},{}", number_text(box.low.x),
+                              number_text(box.low.y), number_text(box.low.z), number_text(box.high.x),
+                              number_text(box.high.y), number_text(box.high.z)));
+    }
     std::uint64_t held = 0;
     for (std::size_t m = 0; m < shares.size(); ++m) {
       for (const auto& t : model.meshes[m].surface.triangles)
@@ -327,8 +365,9 @@ class FocusVerb : public Verb {
   }
 
   std::string input_, output_;
-  std::vector<std::string> at_;
+  std::vector<std::string> at_, sphere_, box_;
   std::vector<Focus> foci_;
+  AttentionRegions regions_;
   std::string view_, eye_, target_, camera_;
   View camera_view_;
   std::string attended_, summary_;

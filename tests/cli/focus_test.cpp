@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -117,6 +118,28 @@ TEST_F(FocusVerb, WritesMarksAndPictures) {
   ASSERT_EQ(focus({"-o", out("p.png"), "--at", "128,128", "--error", "0.05"}).code, 0);
 }
 
+TEST_F(FocusVerb, KeepsWhatIsInARegion) {
+  // The cap of the unit sphere above z = 0.8, by a ball and by a box around it.
+  const auto cap = [](const Model& model) {
+    int count = 0;
+    const TriMesh& mesh = model.meshes[0].surface;
+    for (const auto& t : mesh.triangles)
+      count +=
+          std::all_of(t.begin(), t.end(), [&](VertexId v) { return mesh.positions[v.index()].z > 0.8f; });
+    return count;
+  };
+  const int all = cap(model(sphere_));
+  ASSERT_GT(all, 1000);
+  for (const auto& [option, value] :
+       {std::pair("--sphere", "0,0,1,0.65"), std::pair("--box", "-1,-1,2,1,1,0.8")}) {
+    const Outcome outcome =
+        focus({"-o", out("o.glb"), "--force", option, value, "--factor", "0", "--error", "0.02", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(cap(model(out("o.glb"))), all) << option;
+    EXPECT_LT(outcome.json()["result"]["triangles"], 20480 / 4) << option;
+  }
+}
+
 TEST_F(FocusVerb, LooksFromWhereItIsTold) {
   const auto picture = [&](std::vector<std::string> words) {
     words.insert(words.end(), {"-o", out("p.csv"), "--force", "--at", "128,128", "--json"});
@@ -152,6 +175,10 @@ TEST_F(FocusVerb, RefusesWhatItCannotDo) {
   expect({"--at", "1,1", "--error", "0.1", "--on-surface"}, "no surface");
   expect({"--at", "1,1", "--error", "0.1", "--eye", "1,2,3", "--target", "1,2,3"}, "where it looks at");
   expect({"--at", "1,1", "--error", "0.1", "--target", "1,1,1"}, "--target needs --eye");
+  expect({"--sphere", "0,0,9,1", "--error", "0.1"}, "the model lies from -1");
+  expect({"--sphere", "0,0,1,0", "--error", "0.1"}, "larger than 0");
+  expect({"--box", "0,0,1", "--error", "0.1"}, "'0,0,1' is not a value");
+  expect({"--sphere", "0,0,1,1", "--error", "0.1", "--on-surface"}, "--on-surface needs --at");
   const Outcome camera = focus({"-o", out("no.glb"), "--at", "1,1", "--error", "0.1", "--camera", "Front"});
   EXPECT_EQ(camera.code, 5) << camera.err;
   EXPECT_THAT(camera.err, HasSubstr("no camera"));
