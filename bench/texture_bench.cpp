@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "fovea/base/error.h"
+#include "fovea/budget/picture_loss.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/io/write.h"
 #include "fovea/judge/compare.h"
@@ -118,6 +119,7 @@ Model within_bytes(const Model& model, std::uint64_t most, std::int64_t pixels,
   ShrinkOptions options;
   options.shown_pixels = static_cast<double>(pixels);
   options.max_bytes = static_cast<std::int64_t>(most);
+  options.lost = loss_by_pictures(model, options.shown_pixels, context);
   options.output = output;
   return shrink_textures(model, options, {}, context).model;
 }
@@ -352,15 +354,28 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
       "## Equal bytes\n\n"
       "Textures alone, in the bytes that plain resizing takes: resized plainly; to the same sides, with "
       "texels moved where that gains, and as near as the bytes allow (dB is how near); and with sizes and "
-      "qualities chosen for the bytes, for pictures of this size.\n\n"
+      "qualities chosen for the bytes, by pictures of this size.\n\n"
       "| model | side | way | kB | dB | PSNR base | MS-SSIM base | FLIP base | PSNR lit | MS-SSIM lit | FLIP "
       "lit |\n"
       "|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   struct Sum {
     double psnr = 0, ms_ssim = 0, log_flip = 0;
     int better = 0, worse = 0;
+    double worst = 0;
+    void add(const ImageScores& own, const ImageScores& plain) {
+      psnr += own.psnr - plain.psnr;
+      ms_ssim += own.ms_ssim - plain.ms_ssim;
+      log_flip += std::log(own.flip / plain.flip);
+      count(own.psnr - plain.psnr);
+    }
+    void count(double gain) {
+      better += gain > 0;
+      worse += gain < 0;
+      worst = std::min(worst, gain);
+    }
   };
   std::array<std::array<std::array<Sum, 2>, 3>, 3> sums{};
+  std::array<std::array<Sum, 3>, 3> both{};  // PSNR of the passes together
   for (const Subject& subject : subjects) {
     const Model model = subject.make(), large = without_loss(model);
     for (std::size_t d = 0; d < kParts.size(); ++d) {
@@ -381,13 +396,13 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
         for (std::size_t p = 0; p < 2; ++p) {
           const ImageScores &plain = found[0].passes[p], &own = found[w].passes[p];
           fmt::print(" {:.2f} | {:.5f} | {:.4f} |", own.psnr, own.ms_ssim, own.flip);
-          Sum& sum = sums[d][w][p];
-          sum.psnr += own.psnr - plain.psnr;
-          sum.ms_ssim += own.ms_ssim - plain.ms_ssim;
-          sum.log_flip += std::log(own.flip / plain.flip);
-          sum.better += own.psnr > plain.psnr;
-          sum.worse += own.psnr < plain.psnr;
+          sums[d][w][p].add(own, plain);
         }
+        const auto psnr = [&](std::size_t n) {
+          return (found[n].passes[0].psnr + found[n].passes[1].psnr) / 2;
+        };
+        both[d][w].psnr += psnr(w) - psnr(0);
+        both[d][w].count(psnr(w) - psnr(0));
         fmt::print("\n");
       }
       std::fflush(stdout);
@@ -395,18 +410,21 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
   }
   fmt::print(
       "\nMeans against plain: difference of PSNR (dB) and MS-SSIM, geometric mean of the ratio of FLIP; in "
-      "how many models PSNR is better, and worse.\n\n"
-      "| side | way | pass | PSNR | MS-SSIM | FLIP | better | worse |\n"
-      "|--:|---|---|--:|--:|--:|--:|--:|\n");
+      "how many models PSNR is better, worse, and by how much at most.\n\n"
+      "| side | way | pass | PSNR | MS-SSIM | FLIP | better | worse | at most |\n"
+      "|--:|---|---|--:|--:|--:|--:|--:|--:|\n");
   const auto n = static_cast<double>(subjects.size());
   for (std::size_t d = 0; d < kParts.size(); ++d) {
     for (std::size_t w = 1; w < kNames.size(); ++w) {
       for (std::size_t p = 0; p < 2; ++p) {
         const Sum& sum = sums[d][w][p];
-        fmt::print("| 1/{} | {} | {} | {:+.2f} | {:+.5f} | {:.3f} | {} | {} |\n", kParts[d], kNames[w],
-                   p == 0 ? "base" : "lit", sum.psnr / n, sum.ms_ssim / n, std::exp(sum.log_flip / n),
-                   sum.better, sum.worse);
+        fmt::print("| 1/{} | {} | {} | {:+.2f} | {:+.5f} | {:.3f} | {} | {} | {:+.2f} |\n", kParts[d],
+                   kNames[w], p == 0 ? "base" : "lit", sum.psnr / n, sum.ms_ssim / n,
+                   std::exp(sum.log_flip / n), sum.better, sum.worse, sum.worst);
       }
+      const Sum& sum = both[d][w];
+      fmt::print("| 1/{} | {} | both | {:+.2f} | | | {} | {} | {:+.2f} |\n", kParts[d], kNames[w],
+                 sum.psnr / n, sum.better, sum.worse, sum.worst);
     }
   }
   fmt::print("\n");

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "field_source.h"
+#include "fovea/budget/picture_loss.h"
 #include "fovea/io/extension.h"
 #include "fovea/io/file_form.h"
 #include "fovea/io/image_file.h"
@@ -116,6 +117,8 @@ class TextureVerb : public Verb {
     if (shown_height_) options_.shown_pixels = static_cast<double>(*shown_height_);
     if (!densities.empty()) options_.scales = needed_scales(densities, static_cast<double>(*shown_height_));
     const Shrunk result = session.phase("textures", input_, [&] {
+      if (budget_ || options_.max_bytes)
+        options_.lost = loss_by_pictures(input.model, options_.shown_pixels, session.context);
       return budget_ ? shrink_textures_within(input.model, *budget_, file_form(output_, write_options_),
                                               options_, field, session.context)
                      : shrink_textures(input.model, options_, field, session.context);

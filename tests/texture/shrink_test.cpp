@@ -294,6 +294,27 @@ TEST(ShrinkTextures, BytesLeaveTexelsWhereTheyAre) {
   test::expect_error([&] { shrink(detailed_and_flat(), options); }, ErrorKind::usage, "");
 }
 
+TEST(ShrinkTextures, PicturesDecideWhetherAllSidesAreHalvedAlike) {
+  const Model model = detailed_and_flat();
+  ShrinkOptions options;
+  options.max_bytes = 6000;
+  const Shrunk by_estimate = shrink(model, options);
+  ASSERT_NE(by_estimate.images[0].after.width, by_estimate.images[1].after.width);
+  std::vector<int> seen;  // widths of image 0 of what is halved alike
+  options.lost = [&](const Model& tried) {
+    EXPECT_LE(bytes_of(tried), 6000u);
+    const int a = decode_image(tried.images[0].bytes).width, b = decode_image(tried.images[1].bytes).width;
+    if (a == b) seen.push_back(a);
+    return a == b ? 1.0 / a : 1.0;  // the larger the better, of the two alike
+  };
+  const Shrunk by_pictures = shrink(model, options);
+  ASSERT_FALSE(seen.empty());
+  EXPECT_EQ(by_pictures.images[0].after.width, *std::ranges::max_element(seen));
+  EXPECT_EQ(by_pictures.images[0].after.width, by_pictures.images[1].after.width);
+  options.lost = [](const Model&) { return 1.0; };  // of what loses as much estimates are kept
+  EXPECT_EQ(shrink(model, options).model.images, by_estimate.model.images);
+}
+
 TEST(ShrinkTextures, BytesAreTheSameForAnyNumberOfThreads) {
   ShrinkOptions options;
   options.max_bytes = 9000;

@@ -187,6 +187,7 @@ class BudgetFit::Finder {
       // Qualities near what is chosen, so that shares find what fits them.
       ladders_.textures()->within(bytes_for_images(best_->model), true);
       try_shares();
+      try_halves();
       try_weights();
     }
     add_triangles();
@@ -322,6 +323,22 @@ class BudgetFit::Finder {
       if (choice.ways != wanted) consider(choice);
     }
     return best_->loss.value < before;
+  }
+
+  /// The sides of all images halved alike, as somebody would who measures nothing: estimates can be wrong
+  /// about which image wants large sides rather than high quality.
+  void try_halves() {
+    constexpr int kMost = 5;
+    const FitChoice base = best_->choice;
+    const auto room = static_cast<std::uint64_t>(room_beside(base, base));
+    for (int halvings = 0; halvings <= kMost; ++halvings) {
+      FitChoice choice = base;
+      choice.ways = ladders_.textures()->halved(room, halvings);
+      if (choice.ways.empty()) continue;
+      const std::uint64_t taken = ladders_.image_bytes(choice);
+      if (taken <= room && choice.ways != base.ways) consider(std::move(choice));
+      if (taken < room / 2) return;  // fewer texels only lose more
+    }
   }
 
   /// Bytes moved from some images to others, as pictures want it: estimates do not know what light makes of

@@ -1,6 +1,7 @@
 #include "fovea/budget/picture_loss.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "fovea/base/parallel.h"
@@ -103,6 +104,17 @@ PictureLoss::Loss PictureLoss::of(const Model& model) {
 Comparison PictureLoss::scores(const Model& model) {
   const Model* const tests[] = {&model};
   return compare(original_, tests, options_, context_).front();
+}
+
+std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
+                                                     Context& context) {
+  if (counts(original).triangles == 0) return {};
+  constexpr double kUsual = 1024, kLeast = 64, kMost = 2048;
+  const double size = std::clamp(shown_pixels > 0 ? shown_pixels : kUsual, kLeast, kMost);
+  const ViewOptions around{.set = ViewSet::icosahedron};
+  const auto pictures =
+      std::make_shared<PictureLoss>(original, around, static_cast<int>(size), Distortion::mse, context);
+  return [pictures](const Model& model) { return pictures->of(model).value; };
 }
 
 }  // namespace fovea

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <list>
 #include <optional>
 #include <vector>
@@ -60,5 +61,11 @@ class PictureLoss {
   RenderScene decoded_;                  // images alone
   std::vector<std::vector<Seen>> seen_;  // [#views][#passes]
 };
+
+/// What models lose by squared difference in pictures that show them so many pixels long, from twelve sides;
+/// for `ShrinkOptions::lost`. 0: 1024; at least 64 and at most 2048. `original` and `context` must outlive
+/// it. None if the original shows nothing.
+std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
+                                                     Context& context);
 
 }  // namespace fovea

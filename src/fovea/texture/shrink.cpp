@@ -35,6 +35,13 @@ constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 /// smaller copies of a texture, which a warp only mixes.
 constexpr int kLeastReduction = 4;
 
+/// How often the sides of all images are halved alike, at most, to see whether that does better.
+constexpr int kMostHalvings = 5;
+
+/// What loses up to so many times as much as the best may be the best with finer qualities.
+constexpr double kNearLoss = 1.2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// How an image should be but for what all may take together.
 WantedImage limit_of(const ImageChange::State& image, double seen_scale, const ShrinkOptions& options) {
   double scale = options.scale;
@@ -387,12 +394,38 @@ TextureBudget texture_budget(const Prepared& prepared, std::span<const WantedIma
           context};
 }
 
-/// With images as small as it takes for all files together, from the images as they are.
+/// With images as small as it takes for all files together, from the images as they are. Estimates can be
+/// wrong about which image wants large sides rather than high quality, so pictures look at what somebody
+/// would do who measures nothing, too.
 Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limits,
                     const ShrinkOptions& options, std::span<const VertexField> field, Context& context) {
+  const auto most = static_cast<double>(*options.max_bytes);
   TextureBudget budget = texture_budget(prepared, limits, options, field, context);
-  return shrunk(prepared, budget.choose(static_cast<double>(*options.max_bytes), true), options, field,
-                context);
+  Shrunk best = shrunk(prepared, budget.choose(most, true), options, field, context);
+  if (!options.lost || static_cast<double>(best.bytes) > most) return best;
+  double least = options.lost(best.model);
+  if (least == 0) return best;
+  const auto try_halved = [&](int halvings, bool refine) {
+    const std::vector<WantedImage> wanted = budget.choose_halved(most, halvings, refine);
+    if (wanted.empty()) return std::pair(kInfinity, kInfinity);
+    Shrunk halved = shrunk(prepared, wanted, options, field, context);
+    const auto taken = static_cast<double>(halved.bytes);
+    if (taken > most) return std::pair(kInfinity, kInfinity);
+    const double loss = options.lost(halved.model);
+    if (loss < least) best = std::move(halved);
+    least = std::min(least, loss);
+    return std::pair(loss, taken);
+  };
+  int nearest = 0;
+  double loss_of_nearest = kInfinity;
+  for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+    const auto [loss, taken] = try_halved(halvings, false);
+    if (loss < loss_of_nearest) nearest = halvings;
+    loss_of_nearest = std::min(loss, loss_of_nearest);
+    if (taken < most / 2) break;  // fewer texels only lose more
+  }
+  if (loss_of_nearest < kNearLoss * least) try_halved(nearest, true);
+  return best;
 }
 
 /// The same for images that are baked anew: first that, at their own sizes and without loss.

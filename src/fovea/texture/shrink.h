@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,6 +39,9 @@ struct ShrinkOptions {
   std::vector<double> scales;  ///< [#images] Of the sides of each at most (texel_density.h); or empty.
   std::optional<std::int64_t> max_bytes;  ///< Of all image files together.
   double shown_pixels = 0;  ///< How long the model will be in pictures, for `max_bytes`; 0 for 512 to 2048.
+  /// How much pictures of a model lose, for `max_bytes` (as PictureLoss of budget/picture_loss.h), to choose
+  /// between what estimates say and all sides halved alike; none: as estimates say.
+  std::function<double(const Model&)> lost;
   ImageOutputOptions output;
   TexelMoves moves = TexelMoves::balanced;
   WarpOptions warp;
@@ -87,8 +91,9 @@ struct Shrunk {
 /// Sides are at least 1.
 ///
 /// With `max_bytes` sizes and qualities are chosen image by image so that pictures lose least
-/// (texture_budget.h), after baking anew if both are asked for; no texels move, and the other limits hold
-/// too. What cannot change takes what it takes: if all is at its least and still too large, that is reported
+/// (texture_budget.h), by estimates, or with `lost` by pictures; after baking anew if both are asked for; no
+/// texels move, and the other limits hold too. What cannot change takes what it takes: if all is at its least
+/// and still too large, that is reported
 /// ("bytes-missed").
 ///
 /// `field` [#meshes][#V] says how much is looked at, 0 … 1; empty for alike everywhere. One atlas after the

@@ -90,11 +90,14 @@ void TextureBudget::measure(Candidate& candidate) const {
   }
 }
 
-void TextureBudget::refine(Candidate& candidate, double bytes) const {
+void TextureBudget::refine(Candidate& candidate, double bytes, std::optional<int> halvings) const {
   const ImageUse& use = uses_[candidate.image];
   const Image8 image = without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use);
   const ImageSights seen = sights(candidate);
-  for (ImageWay& more : finer_ways(candidate.ways, bytes, image, candidate.limits, known_faces(candidate),
+  std::vector<ImageWay> near;
+  for (const ImageWay& way : candidate.ways)
+    if (!halvings || is_halved(candidate, way, *halvings)) near.push_back(way);
+  for (ImageWay& more : finer_ways(near, bytes, image, candidate.limits, known_faces(candidate),
                                    ImageLoss(seen, image, use, context_), context_))
     candidate.ways.push_back(std::move(more));
 }
@@ -113,7 +116,12 @@ void TextureBudget::add(Sums& sums, const Candidate& candidate, const ImageWay& 
   }
 }
 
-TextureBudget::Numbers TextureBudget::numbers_within(double bytes) const {
+bool TextureBudget::is_halved(const Candidate& candidate, const ImageWay& way, int times) const {
+  const ImageChange::State& file = files_[candidate.image];
+  return way.width == std::max(1, file.width >> times) && way.height == std::max(1, file.height >> times);
+}
+
+TextureBudget::Numbers TextureBudget::numbers_within(double bytes, std::optional<int> halvings) const {
   double whole = 0;
   for (const Candidate& candidate : candidates_) whole += area(candidate);
   // At first a picture counts by what it loses in the mean over all ways.
@@ -124,19 +132,27 @@ TextureBudget::Numbers TextureBudget::numbers_within(double bytes) const {
     for (std::size_t c = 0; c < sums.size(); ++c)
       sums[c] += all[c] / static_cast<double>(candidate.ways.size());
   }
+  std::vector<Numbers> allowed;
+  for (const Candidate& candidate : candidates_) {
+    Numbers& own = allowed.emplace_back();
+    for (std::size_t w = 0; w < candidate.ways.size(); ++w)
+      if (!halvings || is_halved(candidate, candidate.ways[w], *halvings)) own.push_back(w);
+    if (own.empty()) return {};
+  }
   Numbers numbers;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::vector<LadderStep>> steps;
     std::vector<SizeLadder> ladders;
-    for (const Candidate& candidate : candidates_) {
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
       std::vector<LadderStep>& own = steps.emplace_back();
-      for (std::size_t w = 0; w < candidate.ways.size(); ++w) {
+      for (const std::size_t w : allowed[c]) {
+        const ImageWay& way = candidates_[c].ways[w];
         Sums lost(sums.size());
-        add(lost, candidate, candidate.ways[w]);
+        add(lost, candidates_[c], way);
         double loss = 0;
-        for (std::size_t c = 0; c < sums.size(); ++c)
-          loss += lost[c] / std::max(sums[c], whole * kLeastImageLoss);
-        own.push_back({w, candidate.ways[w].bytes, loss});
+        for (std::size_t p = 0; p < sums.size(); ++p)
+          loss += lost[p] / std::max(sums[p], whole * kLeastImageLoss);
+        own.push_back({own.size(), way.bytes, loss});
       }
       ladders.push_back(lower_hull(own));
     }
@@ -144,6 +160,7 @@ TextureBudget::Numbers TextureBudget::numbers_within(double bytes) const {
     Numbers next;
     for (std::size_t c = 0; c < chosen.size(); ++c) next.push_back(ladders[c][chosen[c]].number);
     fill_room(steps, bytes, next);
+    for (std::size_t c = 0; c < next.size(); ++c) next[c] = allowed[c][next[c]];
     const bool is_known = next == numbers;
     numbers = std::move(next);
     if (is_known) break;
@@ -167,18 +184,30 @@ std::vector<WantedImage> TextureBudget::wanted(std::span<const std::size_t> ways
   return images;
 }
 
-std::vector<std::size_t> TextureBudget::choose_ways(double bytes, bool refine) {
+std::vector<std::size_t> TextureBudget::chosen(double bytes, bool refine, std::optional<int> halvings) {
   const double room = bytes - kept_bytes_;
-  Numbers numbers = numbers_within(room);
-  if (refine) {
+  Numbers numbers = numbers_within(room, halvings);
+  if (refine && !numbers.empty()) {
     double left = room;
     for (std::size_t c = 0; c < candidates_.size(); ++c) left -= candidates_[c].ways[numbers[c]].bytes;
     parallel_for_or_throw(context_, candidates_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c)
-        this->refine(candidates_[c], candidates_[c].ways[numbers[c]].bytes + left);
+        this->refine(candidates_[c], candidates_[c].ways[numbers[c]].bytes + left, halvings);
     });
-    numbers = numbers_within(room);
+    numbers = numbers_within(room, halvings);
   }
+  return numbers.empty() && halvings ? std::vector<std::size_t>{} : ways_of(numbers);
+}
+
+std::vector<std::size_t> TextureBudget::choose_ways(double bytes, bool refine) {
+  return chosen(bytes, refine, {});
+}
+
+std::vector<std::size_t> TextureBudget::choose_halved_ways(double bytes, int halvings, bool refine) {
+  return chosen(bytes, refine, halvings);
+}
+
+std::vector<std::size_t> TextureBudget::ways_of(const Numbers& numbers) const {
   std::vector<std::size_t> ways(limits_.size(), kNoWay);
   for (std::size_t c = 0; c < candidates_.size(); ++c) ways[candidates_[c].image] = numbers[c];
   return ways;
@@ -186,6 +215,11 @@ std::vector<std::size_t> TextureBudget::choose_ways(double bytes, bool refine) {
 
 std::vector<WantedImage> TextureBudget::choose(double bytes, bool refine) {
   return wanted(choose_ways(bytes, refine));
+}
+
+std::vector<WantedImage> TextureBudget::choose_halved(double bytes, int halvings, bool refine) {
+  const std::vector<std::size_t> ways = choose_halved_ways(bytes, halvings, refine);
+  return ways.empty() ? std::vector<WantedImage>{} : wanted(ways);
 }
 
 const TextureBudget::Candidate* TextureBudget::find(std::size_t image) const {

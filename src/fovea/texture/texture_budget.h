@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -45,6 +46,9 @@ class TextureBudget {
   std::vector<WantedImage> choose(double bytes, bool refine);
   /// The same as numbers of ways [#images], `kNoWay` for images that stay as they are.
   std::vector<std::size_t> choose_ways(double bytes, bool refine);
+  /// Both of images that all have their own sides halved so many times; empty if some do not come so.
+  std::vector<WantedImage> choose_halved(double bytes, int halvings, bool refine);
+  std::vector<std::size_t> choose_halved_ways(double bytes, int halvings, bool refine);
 
   static constexpr std::size_t kNoWay = static_cast<std::size_t>(-1);
   /// Makes what is lost of an image count so many times.
@@ -72,12 +76,17 @@ class TextureBudget {
   /// All triangles that show it; none if they are not known.
   std::vector<AtlasFace> known_faces(const Candidate& candidate) const;
   void measure(Candidate& candidate) const;
-  /// Tries more ways that take no more than so many bytes.
-  void refine(Candidate& candidate, double bytes) const;
+  /// Tries more ways that take no more than so many bytes, near any or near those that halve the sides so
+  /// often.
+  void refine(Candidate& candidate, double bytes, std::optional<int> halvings) const;
+  std::vector<std::size_t> chosen(double bytes, bool refine, std::optional<int> halvings);
   /// Adds the losses of a way.
   void add(Sums& sums, const Candidate& candidate, const ImageWay& way) const;
-  /// What loses least of what takes no more than so many bytes.
-  Numbers numbers_within(double bytes) const;
+  /// What loses least of what takes no more than so many bytes, of all ways or of those that halve the sides
+  /// so many times; empty if there are none.
+  Numbers numbers_within(double bytes, std::optional<int> halvings = {}) const;
+  bool is_halved(const Candidate& candidate, const ImageWay& way, int times) const;
+  std::vector<std::size_t> ways_of(const Numbers& numbers) const;
   std::vector<WantedImage> wanted(std::span<const std::size_t> ways) const;
   const Candidate* find(std::size_t image) const;
   double area(const Candidate& candidate) const { return candidate.area * candidate.weight; }

@@ -56,6 +56,13 @@ struct TextureLadders::State {
     return found;
   }
 
+  /// The ways that leave a file as it is, named so.
+  std::vector<std::size_t> with_files(std::vector<std::size_t> ways) const {
+    for (std::size_t i = 0; i < ways.size(); ++i)
+      if (ways[i] != TextureBudget::kNoWay && !budget.ways(i)[ways[i]].file) ways[i] = kAsItIs;
+    return ways;
+  }
+
   const Model& model;
   std::vector<ImageChange::State> files;
   std::vector<Atlas> atlases;
@@ -75,10 +82,11 @@ TextureLadders::~TextureLadders() = default;
 const std::vector<std::vector<TextureRung>>& TextureLadders::rungs() const { return state_->rungs; }
 
 std::vector<std::size_t> TextureLadders::within(std::uint64_t bytes, bool refine) {
-  std::vector<std::size_t> ways = state_->budget.choose_ways(static_cast<double>(bytes), refine);
-  for (std::size_t i = 0; i < ways.size(); ++i)
-    if (ways[i] != TextureBudget::kNoWay && !state_->budget.ways(i)[ways[i]].file) ways[i] = kAsItIs;
-  return ways;
+  return state_->with_files(state_->budget.choose_ways(static_cast<double>(bytes), refine));
+}
+
+std::vector<std::size_t> TextureLadders::halved(std::uint64_t bytes, int halvings) {
+  return state_->with_files(state_->budget.choose_halved_ways(static_cast<double>(bytes), halvings, false));
 }
 
 void TextureLadders::set_weight(std::size_t image, double weight) {

@@ -47,6 +47,8 @@ class TextureLadders {
   /// [#images] The ways that lose least of what takes no more than so many bytes together, or the fewest
   /// bytes there are. With `refine` more qualities are tried near them: some seconds for large images.
   std::vector<std::size_t> within(std::uint64_t bytes, bool refine);
+  /// The same of ways that all have the images' own sides halved so many times; empty if some do not come so.
+  std::vector<std::size_t> halved(std::uint64_t bytes, int halvings);
   /// From now on what is lost of an image counts so many times: estimates do not know what lit pictures make
   /// of it.
   void set_weight(std::size_t image, double weight);
