@@ -7,6 +7,7 @@
 
 #include "field_source.h"
 #include "fovea/budget/fit.h"
+#include "fovea/budget/picture_loss.h"
 #include "fovea/budget/triangle_search.h"
 #include "fovea/io/extension.h"
 #include "fovea/io/write.h"
@@ -134,6 +135,8 @@ class Simplify : public Verb {
           session.phase("saliency", input_, [&] { return with_saliency(model, importance, session); });
     }
     if (textures_ && rebake_ == Rebake::on) shrink_options_.rebake.original = &model;
+    if (textures_ && shrink_options_.max_bytes)
+      shrink_options_.lost = loss_by_pictures(model, shrink_options_.shown_pixels, session.context);
     const Made made =
         budget_ ? make_within(*budget_, model, importance, session) : make(model, importance, session);
     if (!bytes_reached_ && !allow_miss_) return miss(made, session);
