@@ -24,6 +24,7 @@
 #include "fovea/surface/scene_surface.h"
 #include "level_check.h"
 #include "subjects.h"
+#include "words.h"
 
 namespace fovea::bench {
 namespace {
@@ -229,11 +230,7 @@ void print_motion(const std::string& name, const Leveled& model) {
 }
 
 int run(std::vector<std::string> names) {
-  int queries = 0;
-  if (names.size() > 1 && names[0] == "--queries") {
-    queries = std::stoi(names[1]);
-    names.erase(names.begin(), names.begin() + 2);
-  }
+  const int queries = std::stoi(take_option(names, "--queries").value_or("0"));
   std::vector<Subject> subjects = speed_subjects();
   std::erase_if(subjects, [&](const Subject& s) {
     return !names.empty() && std::find(names.begin(), names.end(), s.name) == names.end();

@@ -27,6 +27,7 @@
 #include "fovea/simplify/simplify.h"
 #include "measure.h"
 #include "subjects.h"
+#include "words.h"
 
 namespace fovea::bench {
 namespace {
@@ -158,16 +159,6 @@ void print_ratio(const std::vector<Subject>& subjects, const std::vector<Way>& w
                std::exp(sum[i].flip[1]), better[i], 2 * subjects.size(), 100 * sum[i].kept, sum[i].seconds);
   }
   std::fflush(stdout);
-}
-
-/// The word after `name`, both taken out.
-std::optional<std::string> take_option(std::vector<std::string>& words, const std::string& name) {
-  const auto at = std::find(words.begin(), words.end(), name);
-  if (at == words.end()) return std::nullopt;
-  if (at + 1 == words.end()) throw Error(ErrorKind::usage, name + " needs a value");
-  std::string value = *(at + 1);
-  words.erase(at, at + 2);
-  return value;
 }
 
 int run(int count, char** arguments) {

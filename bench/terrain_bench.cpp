@@ -42,6 +42,7 @@
 #include "fovea/texture/texture_ladder.h"
 #include "measure.h"
 #include "subjects.h"
+#include "words.h"
 
 namespace fovea::bench {
 namespace {
@@ -543,19 +544,11 @@ void measure_land(const Land& land, std::ofstream& points, const std::string& vi
   }
 }
 
-std::string take_option(std::vector<std::string>& words, const std::string& name) {
-  const auto at = std::ranges::find(words, name);
-  if (at == words.end()) return {};
-  if (at + 1 == words.end()) throw Error(ErrorKind::usage, name + " needs a value");
-  std::string value = *(at + 1);
-  words.erase(at, at + 2);
-  return value;
-}
-
 int run(int count, char** arguments) {
   try {
     std::vector<std::string> words(arguments + 1, arguments + count);
-    const std::string file = take_option(words, "--points"), views = take_option(words, "--views");
+    const std::string file = take_option(words, "--points").value_or(""),
+                      views = take_option(words, "--views").value_or("");
     if (!words.empty()) throw Error(ErrorKind::usage, words[0] + " is no option");
     std::ofstream points;
     if (!file.empty()) {

@@ -18,6 +18,7 @@
 #include "fovea/texture/shrink.h"
 #include "input.h"
 #include "report.h"
+#include "saliency_source.h"
 #include "shared_options.h"
 #include "shrink_text.h"
 #include "simplify_text.h"
@@ -27,9 +28,6 @@
 namespace fovea::cli {
 
 namespace {
-
-/// Where saliency comes from; presets in the order of SaliencyPreset.
-enum class SaliencySource { none, chosen, fovea, yang, lee, munaretti };
 
 enum class Rebake { off, on };
 
@@ -93,7 +91,7 @@ class Simplify : public Verb {
           "Spend triangles where people look: by a preset of \"fovea saliency\", or by what measures "
           "best on pictures of this model (auto, which takes several times as long and is meant if no "
           "name is given). None by default: over many models no fixed preset measured clearly better.",
-          choice(saliency_, saliency_sources(saliency), "auto"), ""}});
+          choice(saliency_, saliency_sources(true), "auto"), ""}});
     arguments.add("Saliency", describe(salient_options_));
     std::erase_if(saliency, [](const Option& o) { return o.name != "key-poses" && o.name != "up"; });
     arguments.add("Saliency", saliency);
@@ -147,17 +145,6 @@ class Simplify : public Verb {
   }
 
  private:
-  /// "none", "auto" and the presets.
-  static std::vector<std::string> saliency_sources(const OptionList& saliency) {
-    std::vector<std::string> names{"none", "auto"};
-    for (const Option& option : saliency) {
-      if (option.name != "preset") continue;
-      const std::vector<std::string>& presets = std::get<Option::Choice>(option.value).names;
-      names.insert(names.end(), presets.begin(), presets.end());
-    }
-    return names;
-  }
-
   void declare_needs(Arguments& arguments) const {
     const auto is = [this](std::initializer_list<Metric> metrics) {
       return std::find(metrics.begin(), metrics.end(), options_.metric) != metrics.end();
@@ -185,7 +172,7 @@ class Simplify : public Verb {
     arguments.need({{"key-poses", "up"}, "--saliency", [this] { return saliency_ != SaliencySource::none; }});
     arguments.need({{"saliency-weighting", "saliency-strength"},
                     "a preset of --saliency",
-                    [this] { return saliency_ > SaliencySource::chosen; },
+                    [this] { return preset_of(saliency_).has_value(); },
                     "name one, for example --saliency yang; auto finds the strength itself"});
   }
 
@@ -236,8 +223,7 @@ class Simplify : public Verb {
 
   Importance with_saliency(const Model& model, const Importance& importance, Session& session) {
     if (saliency_ == SaliencySource::chosen) return choose(model, importance, session);
-    saliency_options_.preset =
-        static_cast<SaliencyPreset>(static_cast<int>(saliency_) - static_cast<int>(SaliencySource::fovea));
+    saliency_options_.preset = *preset_of(saliency_);
     const ModelSaliency found = model_saliency(model, saliency_options_, session.context);
     session.report["saliency"] = {{"textured", found.textured}, {"poses", found.poses}};
     return product(importance, salient_importance(model, found.saliency, salient_options_, session.context));

@@ -20,6 +20,7 @@
 #include "fovea/texture/shrink.h"
 #include "input.h"
 #include "report.h"
+#include "saliency_source.h"
 #include "shared_options.h"
 #include "shrink_text.h"
 #include "text.h"
@@ -31,9 +32,6 @@ namespace {
 
 /// Pixels along the pictures in which texels are counted.
 constexpr int kDensitySize = 256;
-
-/// Where saliency comes from; presets in the order of SaliencyPreset.
-enum class SaliencySource { none, fovea, yang, lee, munaretti };
 
 class TextureVerb : public Verb {
  public:
@@ -81,7 +79,7 @@ class TextureVerb : public Verb {
         {{"saliency",
           "Give texels to where people look, by a preset of \"fovea saliency\"; yang by default with --warp "
           "saliency.",
-          choice(saliency_, {"none", "fovea", "yang", "lee", "munaretti"}), ""},
+          choice(saliency_, saliency_sources(false)), ""},
          describe_field("importance", "How much each vertex is looked at (0 is not at all)", importance_),
          {"maps",
           "Also write what steered the warp as grey pictures: MAPS-saliency.png, -distortion, -coverage, "
@@ -199,10 +197,9 @@ class TextureVerb : public Verb {
     SaliencySource source = saliency_;
     if (source == SaliencySource::none && options_.moves == TexelMoves::saliency)
       source = SaliencySource::yang;
-    if (source != SaliencySource::none) {
+    if (const auto preset = preset_of(source)) {
       SaliencyOptions options;
-      options.preset =
-          static_cast<SaliencyPreset>(static_cast<int>(source) - static_cast<int>(SaliencySource::fovea));
+      options.preset = *preset;
       field = product(field, model_saliency(input.model, options, session.context).saliency);
     }
     float greatest = 0;

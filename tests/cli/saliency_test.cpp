@@ -502,7 +502,7 @@ TEST_F(SimplifySaliency, KeyPosesOfAnAnimation) {
 
 TEST_F(SimplifySaliency, WrongValuesAreRefused) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {
-      {{"--saliency", "itti"}, "none|auto|fovea|yang|lee|munaretti"},
+      {{"--saliency", "itti"}, "none|fovea|yang|lee|munaretti|auto"},
       {{"--saliency-weighting", "strong"}, "yang"},
       {{"--saliency-strength", "11"}, "0..10"},
       {{"--saliency-strength", "1"}, "--saliency-strength needs a preset"},
