@@ -241,6 +241,17 @@ TEST(ShrinkTextures, BytesGoToWhereDetailIs) {
   }
 }
 
+TEST(ShrinkTextures, BytesAreUsedUp) {
+  // Of an image of so many texels only every third quality is tried, 5 % apart here, until what is left is
+  // spent.
+  Model model = test::textured(test::grid(2, 2), 1);
+  model.images[0] = png(picture(600, 600));
+  ShrinkOptions options;
+  options.output.format = TextureOutput::jpeg;
+  options.max_bytes = 60000;
+  EXPECT_GT(shrink(model, options).bytes, 58800u);
+}
+
 TEST(ShrinkTextures, BytesThatSufficeChangeNothing) {
   const Model model = detailed_and_flat();
   ShrinkOptions options;

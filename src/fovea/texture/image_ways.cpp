@@ -91,6 +91,23 @@ class Ways {
     return ways_.size() > before;
   }
 
+  /// The way of the highest quality between two that takes no more than so many bytes; none if none does.
+  std::optional<ImageWay> fullest(const ImageWay& way, int fits, int too_much, double bytes) {
+    FileChoice file = *way.file;
+    const Image8 picture = sized(way.width, way.height, file.fill);
+    std::vector<std::uint8_t> best;
+    while (too_much - fits > 1) {
+      const int middle = fits + (too_much - fits) / 2;
+      std::vector<std::uint8_t> tried = encode_texture(picture, file.format, middle);
+      const bool is_good = static_cast<double>(tried.size()) <= bytes;
+      (is_good ? fits : too_much) = middle;
+      if (is_good) best = std::move(tried);
+    }
+    if (best.empty()) return std::nullopt;
+    file.quality = fits;
+    return way_of(picture, file, best);
+  }
+
   /// Qualities beside that of a way, but for those that are `known`.
   void add_beside(const ImageWay& way, std::span<const ImageWay> known) {
     const auto [format, quality, fill] = *way.file;
@@ -168,11 +185,15 @@ class Ways {
   /// False if it takes too many bytes.
   bool add(const Image8& picture, const FileChoice& file) {
     const std::vector<std::uint8_t> encoded = encode_texture(picture, file.format, file.quality);
-    const auto bytes = static_cast<double>(encoded.size());
-    if (bytes >= limits_.most_bytes && !ways_.empty()) return false;
-    ways_.push_back({picture.width, picture.height, file, bytes,
-                     loss_.of(file.quality == 0 ? picture : decode_image(encoded), context_)});
+    if (static_cast<double>(encoded.size()) >= limits_.most_bytes && !ways_.empty()) return false;
+    ways_.push_back(way_of(picture, file, encoded));
     return true;
+  }
+
+  ImageWay way_of(const Image8& picture, const FileChoice& file,
+                  std::span<const std::uint8_t> encoded) const {
+    return {picture.width, picture.height, file, static_cast<double>(encoded.size()),
+            loss_.of(file.quality == 0 ? picture : decode_image(encoded), context_)};
   }
 
   const Image8& image_;
@@ -246,6 +267,21 @@ std::vector<ImageWay> finer_ways(std::span<const ImageWay> ways, double bytes, c
   std::vector<ImageWay> found = finer.take();
   std::erase_if(found, [&](const ImageWay& way) { return way.bytes >= limits.most_bytes; });
   return found;
+}
+
+std::optional<ImageWay> fullest_way(const ImageWay& way, std::span<const ImageWay> ways, double bytes,
+                                    const Image8& image, const ImageLimits& limits,
+                                    std::span<const AtlasFace> faces, const ImageLoss& loss,
+                                    const Context& context) {
+  if (!way.file || way.file->quality == 0) return std::nullopt;
+  int too_much = kMostQuality + 1;
+  for (const ImageWay& known : ways) {
+    if (!known.file || known.width != way.width || known.bytes <= bytes) continue;
+    const auto [format, quality, fill] = *known.file;
+    if (format == way.file->format && fill == way.file->fill && quality > way.file->quality)
+      too_much = std::min(too_much, quality);
+  }
+  return Ways(image, limits, faces, loss, context).fullest(way, way.file->quality, too_much, bytes);
 }
 
 }  // namespace fovea

@@ -61,4 +61,11 @@ std::vector<ImageWay> finer_ways(std::span<const ImageWay> ways, double bytes, c
                                  const ImageLimits& limits, std::span<const AtlasFace> faces,
                                  const ImageLoss& loss, const Context& context);
 
+/// The same size, format and filling as `way`, of the highest quality that takes no more than so many bytes;
+/// none if `way` has that already, or no quality. `ways` are known.
+std::optional<ImageWay> fullest_way(const ImageWay& way, std::span<const ImageWay> ways, double bytes,
+                                    const Image8& image, const ImageLimits& limits,
+                                    std::span<const AtlasFace> faces, const ImageLoss& loss,
+                                    const Context& context);
+
 }  // namespace fovea

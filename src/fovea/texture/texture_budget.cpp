@@ -1,6 +1,7 @@
 #include "fovea/texture/texture_budget.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -16,6 +17,9 @@ namespace {
 
 /// How often sums of losses become the weights that find the next.
 constexpr int kRounds = 6;
+
+/// What is left is spent on a file if it is so much of that.
+constexpr double kLeastFill = 0.005;
 
 /// How much of a squared difference lit pictures tell. With half as much for all but colours, as
 /// `loss_weight` has it, colours took too many bytes: DamagedHelmet at a quarter of its sides was 0.4 dB
@@ -184,6 +188,31 @@ std::vector<WantedImage> TextureBudget::wanted(std::span<const std::size_t> ways
   return images;
 }
 
+void TextureBudget::fill_up(Numbers& numbers, double bytes) {
+  Numbers order(numbers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto taken = [&](std::size_t c) { return candidates_[c].ways[numbers[c]].bytes; };
+  std::ranges::stable_sort(order, std::greater(), taken);
+  double left = bytes;
+  for (const std::size_t c : order) left -= taken(c);
+  for (const std::size_t c : order) {
+    if (left < kLeastFill * taken(c)) continue;
+    Candidate& candidate = candidates_[c];
+    const ImageWay now = candidate.ways[numbers[c]];
+    const ImageUse& use = uses_[candidate.image];
+    const Image8 image = without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use);
+    const ImageSights seen = sights(candidate);
+    const double most = std::min(now.bytes + left, candidate.limits.most_bytes - 1);
+    std::optional<ImageWay> fuller =
+        fullest_way(now, candidate.ways, most, image, candidate.limits, known_faces(candidate),
+                    ImageLoss(seen, image, use, context_), context_);
+    if (!fuller) continue;
+    left -= fuller->bytes - now.bytes;
+    numbers[c] = candidate.ways.size();
+    candidate.ways.push_back(std::move(*fuller));
+  }
+}
+
 std::vector<std::size_t> TextureBudget::chosen(double bytes, bool refine, std::optional<int> halvings) {
   const double room = bytes - kept_bytes_;
   Numbers numbers = numbers_within(room, halvings);
@@ -195,6 +224,7 @@ std::vector<std::size_t> TextureBudget::chosen(double bytes, bool refine, std::o
         this->refine(candidates_[c], candidates_[c].ways[numbers[c]].bytes + left, halvings);
     });
     numbers = numbers_within(room, halvings);
+    fill_up(numbers, room);
   }
   return numbers.empty() && halvings ? std::vector<std::size_t>{} : ways_of(numbers);
 }

@@ -79,6 +79,8 @@ class TextureBudget {
   /// Tries more ways that take no more than so many bytes, near any or near those that halve the sides so
   /// often.
   void refine(Candidate& candidate, double bytes, std::optional<int> halvings) const;
+  /// Spends what is left of the bytes on higher qualities, of the largest file first.
+  void fill_up(Numbers& numbers, double bytes);
   std::vector<std::size_t> chosen(double bytes, bool refine, std::optional<int> halvings);
   /// Adds the losses of a way.
   void add(Sums& sums, const Candidate& candidate, const ImageWay& way) const;
