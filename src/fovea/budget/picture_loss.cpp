@@ -109,7 +109,7 @@ Comparison PictureLoss::scores(const Model& model) {
 std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
                                                      Context& context) {
   if (counts(original).triangles == 0) return {};
-  constexpr double kUsual = 1024, kLeast = 64, kMost = 2048;
+  constexpr double kUsual = 768, kLeast = 64, kMost = 2048;
   const double size = std::clamp(shown_pixels > 0 ? shown_pixels : kUsual, kLeast, kMost);
   const ViewOptions around{.set = ViewSet::icosahedron};
   const auto pictures =

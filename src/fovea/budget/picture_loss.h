@@ -63,7 +63,7 @@ class PictureLoss {
 };
 
 /// What models lose by squared difference in pictures that show them so many pixels long, from twelve sides;
-/// for `ShrinkOptions::lost`. 0: 1024; at least 64 and at most 2048. `original` and `context` must outlive
+/// for `ShrinkOptions::lost`. 0: 768; at least 64 and at most 2048. `original` and `context` must outlive
 /// it. None if the original shows nothing.
 std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
                                                      Context& context);

@@ -1,7 +1,6 @@
 #include "fovea/saliency/attention_region.h"
 
 #include <algorithm>
-#include <array>
 
 #include "fovea/surface/closest_point.h"
 
