@@ -326,6 +326,23 @@ TEST(ShrinkTextures, PicturesDecideWhetherAllSidesAreHalvedAlike) {
   EXPECT_EQ(shrink(model, options).model.images, by_estimate.model.images);
 }
 
+TEST(ShrinkTextures, PicturesDecideWhatColorsAreWorth) {
+  Model model = test::textured(test::grid(2, 2), 2);
+  model.images = {png(picture(128, 128)), png(picture(128, 128))};  // base colour and normals
+  ShrinkOptions options;
+  options.output.format = TextureOutput::jpeg;
+  options.max_bytes = 9000;
+  const Shrunk by_estimate = shrink(model, options);
+  for (const std::size_t liked : {0, 1}) {
+    options.lost = [&](const Model& tried) {
+      return 1.0 / static_cast<double>(tried.images[liked].bytes.size());
+    };
+    const Shrunk by_pictures = shrink(model, options);
+    EXPECT_GT(by_pictures.images[liked].after.bytes, by_estimate.images[liked].after.bytes) << liked;
+    EXPECT_LE(by_pictures.bytes, 9000u);
+  }
+}
+
 TEST(ShrinkTextures, BytesAreTheSameForAnyNumberOfThreads) {
   ShrinkOptions options;
   options.max_bytes = 9000;

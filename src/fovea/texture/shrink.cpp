@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -40,6 +41,8 @@ constexpr int kMostHalvings = 5;
 
 /// What loses up to so many times as much as the best may be the best with finer qualities.
 constexpr double kNearLoss = 1.2;
+/// How many times more or less what is lost of colours is tried to count.
+constexpr double kColorWeight = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// How an image should be but for what all may take together.
@@ -394,38 +397,74 @@ TextureBudget texture_budget(const Prepared& prepared, std::span<const WantedIma
           context};
 }
 
+/// The best by pictures of what is tried.
+class PictureChoice {
+ public:
+  using Make = std::function<Shrunk(std::span<const WantedImage>)>;
+  PictureChoice(Make make, const ShrinkOptions& options)
+      : make_(std::move(make)), lost_(options.lost), most_(static_cast<std::uint64_t>(*options.max_bytes)) {}
+
+  struct Tried {
+    double loss = kInfinity;
+    std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
+  };
+  /// Nothing is tried of no images, and what takes too many bytes is not taken but for want of anything else.
+  Tried consider(std::span<const WantedImage> wanted) {
+    if (wanted.empty()) return {};
+    Shrunk made = make_(wanted);
+    const bool is_first = least_ == kInfinity;
+    if (!lost_ || made.bytes > most_) {
+      if (is_first) best_ = std::move(made);
+      return {};
+    }
+    const Tried tried{lost_(made.model), made.bytes};
+    if (is_first || tried.loss < least_) best_ = std::move(made);
+    least_ = std::min(least_, tried.loss);
+    return tried;
+  }
+
+  double least() const { return least_; }
+  Shrunk take() { return std::move(best_); }
+
+ private:
+  Make make_;
+  const std::function<double(const Model&)>& lost_;
+  std::uint64_t most_;
+  Shrunk best_;
+  double least_ = kInfinity;
+};
+
 /// With images as small as it takes for all files together, from the images as they are. Estimates can be
-/// wrong about which image wants large sides rather than high quality, so pictures look at what somebody
-/// would do who measures nothing, too.
+/// wrong about which image wants large sides rather than high quality, and about what lit pictures make of
+/// colours and of the rest. So pictures look at sides that are halved alike, as somebody would do who
+/// measures nothing, and at more and less for colours.
 Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limits,
                     const ShrinkOptions& options, std::span<const VertexField> field, Context& context) {
   const auto most = static_cast<double>(*options.max_bytes);
   TextureBudget budget = texture_budget(prepared, limits, options, field, context);
-  Shrunk best = shrunk(prepared, budget.choose(most, true), options, field, context);
-  if (!options.lost || static_cast<double>(best.bytes) > most) return best;
-  double least = options.lost(best.model);
-  if (least == 0) return best;
-  const auto try_halved = [&](int halvings, bool refine) {
-    const std::vector<WantedImage> wanted = budget.choose_halved(most, halvings, refine);
-    if (wanted.empty()) return std::pair(kInfinity, kInfinity);
-    Shrunk halved = shrunk(prepared, wanted, options, field, context);
-    const auto taken = static_cast<double>(halved.bytes);
-    if (taken > most) return std::pair(kInfinity, kInfinity);
-    const double loss = options.lost(halved.model);
-    if (loss < least) best = std::move(halved);
-    least = std::min(least, loss);
-    return std::pair(loss, taken);
-  };
+  PictureChoice choice(
+      [&](std::span<const WantedImage> wanted) { return shrunk(prepared, wanted, options, field, context); },
+      options);
+  const PictureChoice::Tried first = choice.consider(budget.choose(most, true));
+  if (first.loss == kInfinity || first.loss == 0) return choice.take();
   int nearest = 0;
-  double loss_of_nearest = kInfinity;
+  double least_halved = kInfinity;
   for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
-    const auto [loss, taken] = try_halved(halvings, false);
-    if (loss < loss_of_nearest) nearest = halvings;
-    loss_of_nearest = std::min(loss, loss_of_nearest);
-    if (taken < most / 2) break;  // fewer texels only lose more
+    const PictureChoice::Tried tried = choice.consider(budget.choose_halved(most, halvings, false));
+    if (tried.loss < least_halved) nearest = halvings;
+    least_halved = std::min(tried.loss, least_halved);
+    if (static_cast<double>(tried.bytes) < most / 2) break;  // fewer texels only lose more
   }
-  if (loss_of_nearest < kNearLoss * least) try_halved(nearest, true);
-  return best;
+  const bool is_near = least_halved < kNearLoss * choice.least();
+  if (is_near) choice.consider(budget.choose_halved(most, nearest, true));
+  for (const double weight : {kColorWeight, 1 / kColorWeight}) {
+    const double before = choice.least();
+    if (!budget.set_color_weight(weight)) break;
+    choice.consider(budget.choose(most, true));
+    if (is_near) choice.consider(budget.choose_halved(most, nearest, true));
+    if (choice.least() < before) break;  // there is nothing on the other side then
+  }
+  return choice.take();
 }
 
 /// The same for images that are baked anew: first that, at their own sizes and without loss.

@@ -262,6 +262,16 @@ void TextureBudget::set_weight(std::size_t image, double weight) {
     if (candidate.image == image) candidate.weight = weight;
 }
 
+bool TextureBudget::set_color_weight(double weight) {
+  std::size_t colors = 0;
+  for (Candidate& candidate : candidates_) {
+    if (uses_[candidate.image].meaning.kind != TexelMeaning::Kind::color) continue;
+    candidate.weight = weight;
+    ++colors;
+  }
+  return colors > 0 && colors < candidates_.size();
+}
+
 std::span<const ImageWay> TextureBudget::ways(std::size_t image) const {
   const Candidate* candidate = find(image);
   return candidate == nullptr ? std::span<const ImageWay>() : candidate->ways;

@@ -53,6 +53,9 @@ class TextureBudget {
   static constexpr std::size_t kNoWay = static_cast<std::size_t>(-1);
   /// Makes what is lost of an image count so many times.
   void set_weight(std::size_t image, double weight);
+  /// The same of all images that hold colours, as against normals and other data. False if there are not
+  /// both.
+  bool set_color_weight(double weight);
   /// Those known so far; more come at the end. Empty for images that stay as they are.
   std::span<const ImageWay> ways(std::size_t image) const;
   /// What all pictures lose by a way to store the image, as they count for the whole model.
