@@ -1,7 +1,6 @@
 #include "fovea/budget/picture_loss.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -110,19 +109,12 @@ Comparison PictureLoss::scores(const Model& model) {
 std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
                                                      Context& context) {
   if (counts(original).triangles == 0) return {};
-  const auto pictures_of = [&](ViewSet set, double size) {
-    return std::make_shared<PictureLoss>(original, ViewOptions{.set = set}, static_cast<int>(size),
-                                         Distortion::mse, context);
-  };
-  if (shown_pixels > 0) {
-    constexpr double kLeast = 64, kMost = 2048;
-    const auto pictures = pictures_of(ViewSet::icosahedron, std::clamp(shown_pixels, kLeast, kMost));
-    return [pictures](const Model& model) { return pictures->of(model).value; };
-  }
-  const auto small = pictures_of(ViewSet::icosahedron, 512), large = pictures_of(ViewSet::octahedron, 1024);
-  return [small, large](const Model& model) {
-    return std::sqrt(small->of(model).value * large->of(model).value);
-  };
+  constexpr double kUsual = 512, kLeast = 64, kMost = 2048;
+  const double size = std::clamp(shown_pixels > 0 ? shown_pixels : kUsual, kLeast, kMost);
+  const ViewOptions around{.set = ViewSet::icosahedron};
+  const auto pictures =
+      std::make_shared<PictureLoss>(original, around, static_cast<int>(size), Distortion::mse, context);
+  return [pictures](const Model& model) { return pictures->of(model).value; };
 }
 
 }  // namespace fovea

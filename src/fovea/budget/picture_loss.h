@@ -62,9 +62,9 @@ class PictureLoss {
   std::vector<std::vector<Seen>> seen_;  // [#views][#passes]
 };
 
-/// What models lose by squared difference in pictures of `shown_pixels` (64 at least and 2048 at most) from
-/// twelve sides, for `ShrinkOptions::lost`. 0, for any size: the geometric mean of 512 and 1024, these from
-/// six sides. `original` and `context` must outlive it. None if the original shows nothing.
+/// What models lose by squared difference in pictures of `shown_pixels` (64 at least and 2048 at most; 0:
+/// 512) from twelve sides, for `ShrinkOptions::lost`. `original` and `context` must outlive it. None if the
+/// original shows nothing.
 std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
                                                      Context& context);
 

@@ -447,23 +447,29 @@ Shrunk within_bytes(const Prepared& prepared, std::span<const WantedImage> limit
       options);
   const PictureChoice::Tried first = choice.consider(budget.choose(most, true));
   if (first.loss == kInfinity || first.loss == 0) return choice.take();
-  int nearest = 0;
-  double least_halved = kInfinity;
-  for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
-    const PictureChoice::Tried tried = choice.consider(budget.choose_halved(most, halvings, false));
-    if (tried.loss < least_halved) nearest = halvings;
+  // Whether sides are halved, and how often; and what colours count.
+  std::optional<int> halvings, nearest;
+  double weight = 1, least_halved = kInfinity;
+  for (int times = 0; times <= kMostHalvings; ++times) {
+    const PictureChoice::Tried tried = choice.consider(budget.choose_halved(most, times, false));
+    if (tried.loss < least_halved) nearest = times;
     least_halved = std::min(tried.loss, least_halved);
     if (static_cast<double>(tried.bytes) < most / 2) break;  // fewer texels only lose more
   }
-  const bool is_near = least_halved < kNearLoss * choice.least();
-  if (is_near) choice.consider(budget.choose_halved(most, nearest, true));
-  for (const double weight : {kColorWeight, 1 / kColorWeight}) {
+  if (least_halved < kNearLoss * choice.least()) halvings = nearest;
+  const auto chosen = [&](bool refine) {
+    return halvings ? budget.choose_halved(most, *halvings, refine) : budget.choose(most, refine);
+  };
+  for (const double tried : {kColorWeight, 1 / kColorWeight}) {
     const double before = choice.least();
-    if (!budget.set_color_weight(weight)) break;
-    choice.consider(budget.choose(most, true));
-    if (is_near) choice.consider(budget.choose_halved(most, nearest, true));
-    if (choice.least() < before) break;  // there is nothing on the other side then
+    if (!budget.set_color_weight(tried)) break;
+    choice.consider(chosen(false));
+    if (choice.least() == before) continue;
+    weight = tried;
+    break;  // there is nothing on the other side then
   }
+  budget.set_color_weight(weight);
+  if (halvings || weight != 1) choice.consider(chosen(true));
   return choice.take();
 }
 
