@@ -40,7 +40,8 @@ struct ShrinkOptions {
   std::optional<std::int64_t> max_bytes;  ///< Of all image files together.
   double shown_pixels = 0;  ///< How long the model will be in pictures, for `max_bytes`; 0 for 512 to 2048.
   /// How much pictures of a model lose, for `max_bytes` (as PictureLoss of budget/picture_loss.h), to choose
-  /// between what estimates say and all sides halved alike; none: as estimates say.
+  /// between what estimates say, all sides halved alike, and more or less for colours; none: as estimates
+  /// say.
   std::function<double(const Model&)> lost;
   ImageOutputOptions output;
   TexelMoves moves = TexelMoves::balanced;
