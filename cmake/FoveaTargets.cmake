@@ -23,6 +23,14 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_G
   target_compile_options(fovea_warnings INTERFACE -Wno-restrict)
 endif()
 
+if(CMAKE_UNITY_BUILD)
+  # Names local to a file meet those of the files before it; builds of single files warn where it matters.
+  target_compile_options(fovea_warnings INTERFACE -Wno-shadow)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(fovea_warnings INTERFACE -Wno-subobject-linkage)
+  endif()
+endif()
+
 # Same bits on any machine: no contraction into fused multiply-adds that depends on the target. Nobody reads
 # errno or traps after arithmetic; without that, roots and choices become vector instructions.
 add_library(fovea_floating_point INTERFACE)

@@ -19,7 +19,7 @@ namespace {
 
 const char* name_of(JudgedPass pass) { return pass == JudgedPass::lit ? "lit" : "base_color"; }
 
-Json to_json(const ImageScores& s) {
+Json as_json(const ImageScores& s) {
   return {{"psnr", number_json(s.psnr)},
           {"psnr_foreground", number_json(s.psnr_foreground)},
           {"ssim", s.ssim},
@@ -30,7 +30,7 @@ Json to_json(const ImageScores& s) {
           {"flip_foreground", s.flip_foreground}};
 }
 
-Json to_json(const Deviation& d, double diagonal) {
+Json as_json(const Deviation& d, double diagonal) {
   return {{"mean", number_json(d.mean)},
           {"rms", number_json(d.rms)},
           {"max", number_json(d.max)},
@@ -38,26 +38,26 @@ Json to_json(const Deviation& d, double diagonal) {
           {"max_rel", number_json(d.max / diagonal)}};
 }
 
-Json to_json(const SurfaceDistance& d, double diagonal) {
-  return {{"forward", to_json(d.forward, diagonal)},
-          {"backward", to_json(d.backward, diagonal)},
+Json as_json(const SurfaceDistance& d, double diagonal) {
+  return {{"forward", as_json(d.forward, diagonal)},
+          {"backward", as_json(d.backward, diagonal)},
           {"mean_rel", number_json(d.mean() / diagonal)},
           {"hausdorff_rel", number_json(d.hausdorff() / diagonal)}};
 }
 
-Json to_json(const Comparison& c) {
+Json as_json(const Comparison& c) {
   Json views = Json::array();
   for (const ViewComparison& view : c.views) {
     Json json{{"name", view.name}};
     for (const JudgedPass pass : kJudgedPasses)
-      json[name_of(pass)] = to_json(view.passes[static_cast<std::size_t>(pass)]);
+      json[name_of(pass)] = as_json(view.passes[static_cast<std::size_t>(pass)]);
     json["silhouette_iou"] = view.silhouette_iou;
     views.push_back(std::move(json));
   }
   Json json;
-  for (const JudgedPass pass : kJudgedPasses) json[name_of(pass)] = to_json(c[pass]);
+  for (const JudgedPass pass : kJudgedPasses) json[name_of(pass)] = as_json(c[pass]);
   json["silhouette_iou"] = c.silhouette_iou;
-  json["distance"] = c.distance ? to_json(*c.distance, c.reference_diagonal) : Json();
+  json["distance"] = c.distance ? as_json(*c.distance, c.reference_diagonal) : Json();
   json["views"] = std::move(views);
   return json;
 }
@@ -178,7 +178,7 @@ class Compare : public Verb {
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Comparison& c = found[i];
       Json json{{"path", tests[i].input.path}};
-      json.update(to_json(c));
+      json.update(as_json(c));
       results.push_back(std::move(json));
       const ImageScores &lit = c[JudgedPass::lit], &base = c[JudgedPass::base_color];
       row(tests[i], {fmt::format("{:.4f}", lit.flip), fmt::format("{:.4f}", base.flip),

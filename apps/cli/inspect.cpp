@@ -11,7 +11,7 @@ namespace fovea::cli {
 
 namespace {
 
-using Json = nlohmann::json;
+using FileJson = nlohmann::json;  // sorted by keys
 
 LayerFacts layer_facts(const TriMesh& mesh, const AttributeLayer& layer) {
   std::vector<bool> seen(mesh.vertex_count());
@@ -39,14 +39,14 @@ MeshFacts mesh_facts(const TriMesh& mesh) {
 
 // Extensions keep their textures in objects whose names end in "Texture" (all of Khronos' do).
 void add_extension_textures(const Material& material, std::vector<TextureUse>& uses) {
-  const Json json = Json::parse(material.json, nullptr, false);
+  const FileJson json = FileJson::parse(material.json, nullptr, false);
   if (!json.is_object() || !json.contains("extensions")) return;
   for (const auto& extension : json["extensions"].items()) {
     if (!extension.value().is_object()) continue;
     for (const auto& [name, value] : extension.value().items()) {
       const bool texture = name.size() > 7 && name.compare(name.size() - 7, 7, "Texture") == 0;
       if (!texture || !value.is_object()) continue;
-      const Json index = value.value("index", Json()), set = value.value("texCoord", Json(0));
+      const FileJson index = value.value("index", FileJson()), set = value.value("texCoord", FileJson(0));
       if (!index.is_number_integer() || !set.is_number_integer()) continue;
       uses.push_back({extension.key() + "." + name, index.get<int>(), -1, set.get<int>()});
     }
@@ -78,9 +78,9 @@ std::vector<TextureUse> texture_uses(const Model& model, const Material& materia
 }
 
 std::string generator_of(const Model& model) {
-  const Json json = Json::parse(model.json, nullptr, false);
+  const FileJson json = FileJson::parse(model.json, nullptr, false);
   if (!json.is_object() || !json.contains("asset") || !json["asset"].is_object()) return {};
-  const Json generator = json["asset"].value("generator", Json());
+  const FileJson generator = json["asset"].value("generator", FileJson());
   return generator.is_string() ? generator.get<std::string>() : std::string();
 }
 

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 enum class LevelTextures { follow, keep };
-enum class Rebake { off, on };
+enum class LevelRebake { off, on };
 /// What is written. The first leaves it to the extension of the output.
 enum class LodsOutput { by_extension, chain, levels };
 /// Of the coarsest of all levels, if nobody says how many triangles it is to have.
@@ -116,7 +116,7 @@ class Lods : public Verb {
     if (has_all_levels()) return write_levels(session, input, importance);
     if (input.levels) options_.record = &input.levels->record;
     if (share_vertices_) share_vertices(input);
-    if (rebake_ == Rebake::on) options_.textures.rebake.original = &input.model;
+    if (rebake_ == LevelRebake::on) options_.textures.rebake.original = &input.model;
     if (!options_.bytes.empty()) {
       const std::optional<std::uint64_t> smallest =
           session.phase("split", input_, [&] { return split_bytes(input.model, session.context); });
@@ -488,7 +488,7 @@ class Lods : public Verb {
   bool allow_miss_ = false;
   LodsOutput as_ = LodsOutput::by_extension;
   LevelTextures textures_ = LevelTextures::follow;
-  Rebake rebake_ = Rebake::off;
+  LevelRebake rebake_ = LevelRebake::off;
   LodChainOptions options_;
   ReadOptions read_options_;
   WriteOptions write_options_;

@@ -30,7 +30,7 @@ namespace fovea::cli {
 namespace {
 
 /// What is written. The first leaves it to the extension of the output.
-enum class OutputKind { by_extension, colors, attribute, ids, properties, local, picture };
+enum class SegmentOutput { by_extension, colors, attribute, ids, properties, local, picture };
 
 constexpr const char* kAttribute = "_CLUSTER";
 
@@ -128,7 +128,7 @@ class Segment : public Verb {
     need_views(arguments, view_options_);
     arguments.need({{"views", "view-count", "elevation", "fov", "margin", "view-size", "columns"},
                     "a picture as output",
-                    [&] { return output_.empty() || kind() == OutputKind::picture; },
+                    [&] { return output_.empty() || kind() == SegmentOutput::picture; },
                     "name it .png, .jpg or .webp"});
     arguments.need({{"key-poses"},
                     "all of the animations",
@@ -157,19 +157,19 @@ class Segment : public Verb {
     if (saliency_options_.pose.animation) saliency_options_.key_poses = 1;
   }
 
-  OutputKind kind() const {
-    if (kind_ != OutputKind::by_extension) return kind_;
-    if (is_picture_name(output_)) return OutputKind::picture;
-    if (lower_extension(output_) == ".json") return OutputKind::properties;
-    return is_field_name(output_) ? OutputKind::ids : OutputKind::colors;
+  SegmentOutput kind() const {
+    if (kind_ != SegmentOutput::by_extension) return kind_;
+    if (is_picture_name(output_)) return SegmentOutput::picture;
+    if (lower_extension(output_) == ".json") return SegmentOutput::properties;
+    return is_field_name(output_) ? SegmentOutput::ids : SegmentOutput::colors;
   }
 
   void (*output_check() const)(const std::filesystem::path&, bool) {
     switch (kind_) {
-      case OutputKind::ids:
-      case OutputKind::local: return check_field_output;
-      case OutputKind::properties: return check_properties_output;
-      case OutputKind::picture: return check_image_output;
+      case SegmentOutput::ids:
+      case SegmentOutput::local: return check_field_output;
+      case SegmentOutput::properties: return check_properties_output;
+      case SegmentOutput::picture: return check_image_output;
       default: return check_attribute_output;
     }
   }
@@ -201,18 +201,18 @@ class Segment : public Verb {
     const auto& [scene, saliency, clusters, properties] = segments;
     const std::vector<FaceNumbers> numbers = per_mesh(model, scene, clusters);
     switch (kind_) {
-      case OutputKind::ids: write_field(output_, ids_of(numbers), "cluster", force_); break;
-      case OutputKind::local: {
+      case SegmentOutput::ids: write_field(output_, ids_of(numbers), "cluster", force_); break;
+      case SegmentOutput::local: {
         const std::vector<VertexField> local = split(scene, local_saliency(scene, saliency, clusters));
         write_field(output_, field_in_source_order(model, local), "local-saliency", force_);
         break;
       }
-      case OutputKind::properties: write_properties(properties); break;
-      case OutputKind::picture:
+      case SegmentOutput::properties: write_properties(properties); break;
+      case SegmentOutput::picture:
         write_image(picture(face_map(model, numbers, cluster_colors(scene, clusters)), session.context),
                     output_, force_);
         break;
-      case OutputKind::attribute: return write(with_face_attribute(model, numbers, kAttribute), session);
+      case SegmentOutput::attribute: return write(with_face_attribute(model, numbers, kAttribute), session);
       default: {
         const Model colored = face_map(model, numbers, cluster_colors(scene, clusters));
         return write(with_face_attribute(colored, numbers, kAttribute), session);
@@ -275,7 +275,7 @@ class Segment : public Verb {
 
   std::vector<std::string> inputs_;
   std::string output_;
-  OutputKind kind_ = OutputKind::by_extension;
+  SegmentOutput kind_ = SegmentOutput::by_extension;
   bool force_ = false;
   std::int64_t size_ = 384;
   std::int64_t columns_ = 0;

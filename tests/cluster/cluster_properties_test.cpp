@@ -11,7 +11,7 @@
 namespace fovea {
 namespace {
 
-SceneSurface scene_of(const TriMesh& mesh) {
+SceneSurface bare_scene(const TriMesh& mesh) {
   SceneSurface scene;
   scene.surface = surface_of(mesh);
   return scene;
@@ -33,7 +33,7 @@ Clusters sides(const SceneSurface& scene) {
 }
 
 TEST(ClusterProperties, OfTheSidesOfACube) {
-  const SceneSurface scene = scene_of(test::cube());
+  const SceneSurface scene = bare_scene(test::cube());
   VertexField saliency(8);
   for (std::uint32_t v = 0; v < 8; ++v)
     saliency.values()[v] = scene.surface.positions[v].x > 0 ? 1.0f : 0.25f;
@@ -62,7 +62,7 @@ TEST(ClusterProperties, OfTheSidesOfACube) {
 }
 
 TEST(ClusterProperties, DeviationIsTheLargestAngle) {
-  const SceneSurface scene = scene_of(test::cube());
+  const SceneSurface scene = bare_scene(test::cube());
   Clusters clusters = sides(scene);
   for (std::uint32_t& c : clusters.of_face.values()) c = c < 3 ? 0 : 1;
   clusters.count = 2;
@@ -72,7 +72,7 @@ TEST(ClusterProperties, DeviationIsTheLargestAngle) {
 }
 
 TEST(ClusterProperties, WhereNormalsCancelOutThereIsNoMean) {
-  const SceneSurface scene = scene_of(test::icosphere(2));
+  const SceneSurface scene = bare_scene(test::icosphere(2));
   Clusters all;
   all.count = 1;
   all.of_face = Field<FaceId, std::uint32_t>(scene.surface.triangles.size());
@@ -84,9 +84,9 @@ TEST(ClusterProperties, WhereNormalsCancelOutThereIsNoMean) {
 
 TEST(ClusterProperties, OfTinyAndHugeScenesAreNumbers) {
   for (const float unit : {1e-37f, 1e37f}) {
-    SceneSurface scene = scene_of(test::cube());
+    SceneSurface scene = bare_scene(test::cube());
     for (Vec3f& p : scene.surface.positions) p = p * unit;
-    const ClusterProperties p = cluster_properties(scene, VertexField(8), sides(scene_of(test::cube())))[0];
+    const ClusterProperties p = cluster_properties(scene, VertexField(8), sides(bare_scene(test::cube())))[0];
     EXPECT_NEAR(p.area / (4 * static_cast<double>(unit) * static_cast<double>(unit)), 1, 1e-6);
     EXPECT_NEAR(p.mean_normal.x, 1, 1e-6);
   }

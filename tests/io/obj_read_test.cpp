@@ -14,27 +14,27 @@ using test::expect_error;
 using test::TempFolder;
 using test::told;
 
-struct Read {
+struct ReadObj {
   Context context;
   Model model;
-  explicit Read(const std::string& text, const std::filesystem::path& folder = "/nonexistent",
-                const ReadOptions& options = {}) {
+  explicit ReadObj(const std::string& text, const std::filesystem::path& folder = "/nonexistent",
+                   const ReadOptions& options = {}) {
     model = read_obj(bytes_of(text), folder, "test.obj", options, context);
     check(model.meshes.at(0).surface);
   }
   const TriMesh& mesh() const { return model.meshes.at(0).surface; }
 };
 
-void expect_refused(const std::string& text, const std::string& place, const std::string& message = {}) {
+void expect_obj_refused(const std::string& text, const std::string& place, const std::string& message = {}) {
   Context context;
   expect_error([&] { read_obj(bytes_of(text), {}, "test.obj", {}, context); }, ErrorKind::format, place,
                message);
 }
 
-constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+constexpr const char* kObjTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST(ObjRead, OneTriangle) {
-  const Read read(std::string(kTriangle) + "f 1 2 3\n");
+  const ReadObj read(std::string(kObjTriangle) + "f 1 2 3\n");
   EXPECT_EQ(read.mesh().face_count(), 1u);
   EXPECT_EQ(read.mesh().positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_TRUE(read.mesh().layers.empty());
@@ -45,7 +45,7 @@ TEST(ObjRead, OneTriangle) {
 }
 
 TEST(ObjRead, TextureCoordinatesCountFromTheTopLeft) {
-  const Read read(std::string(kTriangle) + "vt 0.25 0.75\nvt 1\nvt 0 1 0\nf 1/1 2/2 3/3\n");
+  const ReadObj read(std::string(kObjTriangle) + "vt 0.25 0.75\nvt 1\nvt 0 1 0\nf 1/1 2/2 3/3\n");
   const AttributeLayer* uv = read.mesh().find(Semantic::uv);
   ASSERT_TRUE(uv);
   EXPECT_EQ(uv->values, (std::vector<float>{0.25f, 0.25f, 1, 1, 0, 0}));
@@ -53,7 +53,7 @@ TEST(ObjRead, TextureCoordinatesCountFromTheTopLeft) {
 
 TEST(ObjRead, SeamsBelongToTheirLayerOnly) {
   // Two triangles on the edge 2-3: the texture is cut there, the normals are not.
-  const Read read(
+  const ReadObj read(
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt .5 .5\nvn 0 0 1\n"
       "f 1/1/1 2/2/1 3/3/1\nf 2/4/1 4/1/1 3/4/1\n");
   EXPECT_EQ(read.mesh().vertex_count(), 4u);
@@ -62,7 +62,7 @@ TEST(ObjRead, SeamsBelongToTheirLayerOnly) {
 }
 
 TEST(ObjRead, NormalsGetLengthOneAndBadOnesAreMadeAnew) {
-  const Read read(std::string(kTriangle) + "vn 0 0 5\nvn 0 0 0\nf 1//1 2//1 3//2\n");
+  const ReadObj read(std::string(kObjTriangle) + "vn 0 0 5\nvn 0 0 0\nf 1//1 2//1 3//2\n");
   const AttributeLayer* normals = read.mesh().find(Semantic::normal);
   ASSERT_TRUE(normals);
   EXPECT_EQ(normals->values, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
@@ -70,7 +70,7 @@ TEST(ObjRead, NormalsGetLengthOneAndBadOnesAreMadeAnew) {
 }
 
 TEST(ObjRead, NegativeIndicesCountFromThePresentEnd) {
-  const Read read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf -4 -2 -1\n");
+  const ReadObj read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf -4 -2 -1\n");
   ASSERT_EQ(read.mesh().face_count(), 2u);
   const auto second = read.mesh().triangles[1];
   EXPECT_EQ(read.mesh().positions[second[0].index()], (Vec3f{0, 0, 0}));
@@ -79,13 +79,13 @@ TEST(ObjRead, NegativeIndicesCountFromThePresentEnd) {
 }
 
 TEST(ObjRead, FacesMayComeBeforeTheirVertices) {
-  const Read read(std::string("f 1 2 3\n") + kTriangle);
+  const ReadObj read(std::string("f 1 2 3\n") + kObjTriangle);
   EXPECT_EQ(read.mesh().face_count(), 1u);
 }
 
 TEST(ObjRead, SourceVerticesAreTheLinesOfTheFile) {
   // Line 2 and 4 are the same point, line 5 is used by nothing.
-  const Read read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 9 9 9\nv 1 1 0\nf 1 2 3\nf 4 6 3\n");
+  const ReadObj read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 9 9 9\nv 1 1 0\nf 1 2 3\nf 4 6 3\n");
   const auto& source = read.mesh().source_vertex;
   ASSERT_EQ(source.size(), 6u);
   EXPECT_EQ(source[1], source[3]);
@@ -95,7 +95,7 @@ TEST(ObjRead, SourceVerticesAreTheLinesOfTheFile) {
 }
 
 TEST(ObjRead, SourceVerticesAreTheLinesOfTheFileWithSeamsAndMaterialsToo) {
-  const Read read(
+  const ReadObj read(
       "v 0 0 0\nv 9 9 9\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 1\n"
       "usemtl b\nf 1/1 3/1 4/1\nusemtl a\nf 3/2 5/2 4/2\n");
   const auto& source = read.mesh().source_vertex;
@@ -110,19 +110,19 @@ TEST(ObjRead, SourceVerticesAreTheLinesOfTheFileWithSeamsAndMaterialsToo) {
 }
 
 TEST(ObjRead, LineEndsContinuationsCommentsAndPlusSigns) {
-  const Read read("# head\r\nv 0 0 0 # here\r\nv +1 0 \\\r\n 0\r\n\r\n  v 0 1.e0 0\r\nf 1 2 \\\n3");
+  const ReadObj read("# head\r\nv 0 0 0 # here\r\nv +1 0 \\\r\n 0\r\n\r\n  v 0 1.e0 0\r\nf 1 2 \\\n3");
   EXPECT_EQ(read.mesh().positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_EQ(read.mesh().face_count(), 1u);
 }
 
 TEST(ObjRead, TinyNumbersAreZero) {
-  const Read read(
+  const ReadObj read(
       "v 1e-60 0 0\nv 1 0 0\nv 0 0.0000000000000000000000000000000000000000000000000001 1\nf 1 2 3\n");
   EXPECT_EQ(read.mesh().positions[0], (Vec3f{0, 0, 0}));
 }
 
 TEST(ObjRead, ConcavePolygonsAreCutWithoutFlips) {
-  const Read read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");
+  const ReadObj read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");
   ASSERT_EQ(read.mesh().face_count(), 3u);
   double area = 0;
   for (const auto& t : read.mesh().triangles) {
@@ -135,7 +135,7 @@ TEST(ObjRead, ConcavePolygonsAreCutWithoutFlips) {
 }
 
 TEST(ObjRead, ColoursOfVerticesBecomeLight) {
-  const Read read("v 0 0 0 1 0.5 0\nv 1 0 0 1 0.5 0\nv 0 1 0\nf 1 2 3\n");
+  const ReadObj read("v 0 0 0 1 0.5 0\nv 1 0 0 1 0.5 0\nv 0 1 0\nf 1 2 3\n");
   const AttributeLayer* color = read.mesh().find(Semantic::color);
   ASSERT_TRUE(color);
   EXPECT_EQ(color->width, 3);
@@ -148,8 +148,8 @@ TEST(ObjRead, ColoursOfVerticesBecomeLight) {
 TEST(ObjRead, MaterialsInOrderOfFirstUse) {
   TempFolder folder;
   folder.add("a.mtl", "newmtl unused\nKd 1 0 0\nnewmtl red\nKd 1 0 0\nnewmtl blue glass\nKd 0 0 1\nd 0.25\n");
-  const Read read(
-      std::string("mtllib a.mtl\n") + kTriangle +
+  const ReadObj read(
+      std::string("mtllib a.mtl\n") + kObjTriangle +
           "usemtl unused\nusemtl blue glass\nf 1 2 3\nusemtl red\nf 3 2 1\nusemtl blue glass\nf 1 2 3\n",
       folder.path());
   ASSERT_EQ(read.model.materials.size(), 2u);
@@ -163,7 +163,7 @@ TEST(ObjRead, MaterialsInOrderOfFirstUse) {
 }
 
 TEST(ObjRead, FacesWithAndWithoutTextureCoordinatesAreSeparateParts) {
-  const Read read(std::string(kTriangle) + "vt 0 0\nf 1/1 2/1 3/1\nf 3 2 1\n");
+  const ReadObj read(std::string(kObjTriangle) + "vt 0 0\nf 1/1 2/1 3/1\nf 3 2 1\n");
   ASSERT_EQ(read.mesh().parts.size(), 2u);
   const AttributeLayer* uv = read.mesh().find(Semantic::uv);
   EXPECT_TRUE(uv->corner_value[0].valid());
@@ -179,9 +179,9 @@ TEST(ObjRead, ImagesComeInOnceAsTheyAre) {
       "newmtl a\nKd 0 0 0\nmap_Kd -s 2 3 1 -o 0.5 0.25 -clamp on maps\\my paint.png\nNs 0\n"
       "newmtl b\nmap_Kd C:\\somewhere\\else\\maps/my paint.png\n"
       "newmtl c\nmap_Kd maps/my paint.png\nmap_Bump -bm 0.5 maps/my paint.png\nPr 0.3\nPm 0.7\nKe 0 1 0\n");
-  const Read read(std::string("mtllib a.mtl\n") + kTriangle + "vt 0 0\n" +
-                      "usemtl a\nf 1/1 2/1 3/1\nusemtl c\nf 1/1 2/1 3/1\n",
-                  folder.path());
+  const ReadObj read(std::string("mtllib a.mtl\n") + kObjTriangle + "vt 0 0\n" +
+                         "usemtl a\nf 1/1 2/1 3/1\nusemtl c\nf 1/1 2/1 3/1\n",
+                     folder.path());
   ASSERT_EQ(read.model.images.size(), 1u);
   EXPECT_EQ(read.model.images[0].uri, "maps/my paint.png");
   EXPECT_EQ(read.model.images[0].mime_type, "image/png");
@@ -210,15 +210,16 @@ TEST(ObjRead, NothingIsReadFromOutsideTheFolder) {
   std::filesystem::create_symlink(folder.path() / "secret.png", folder.path() / "inside/link.png");
   folder.add("inside/b.mtl", "newmtl b\nmap_Kd link.png\n");
   folder.add("inside/c.mtl", "newmtl c\nmap_Kd " + (folder.path() / "secret.png").string() + "\n");
-  const Read read(std::string("mtllib a.mtl b.mtl c.mtl\n") + kTriangle +
-                      "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\nusemtl c\nf 1/1 2/1 3/1\n",
-                  folder.path() / "inside");
+  const ReadObj read(
+      std::string("mtllib a.mtl b.mtl c.mtl\n") + kObjTriangle +
+          "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\nusemtl c\nf 1/1 2/1 3/1\n",
+      folder.path() / "inside");
   EXPECT_TRUE(read.model.images.empty());
   EXPECT_EQ(told(read.context, "missing-image"), 3u);
 }
 
 TEST(ObjRead, WhatIsMissingIsToldAndNotAnError) {
-  const Read read(std::string("mtllib nowhere.mtl\n") + kTriangle + "usemtl lost\nf 1 2 3\n");
+  const ReadObj read(std::string("mtllib nowhere.mtl\n") + kObjTriangle + "usemtl lost\nf 1 2 3\n");
   EXPECT_EQ(told(read.context, "missing-material-library"), 1u);
   EXPECT_EQ(told(read.context, "missing-material"), 1u);
   ASSERT_EQ(read.model.materials.size(), 1u);
@@ -229,38 +230,39 @@ TEST(ObjRead, ImagesWithoutTextureCoordinatesAreLeftOut) {
   TempFolder folder;
   folder.add("p.png", test::tiny_png());
   folder.add("a.mtl", "newmtl a\nKd 1 0 0\nmap_Kd p.png\n");
-  const Read read(std::string("mtllib a.mtl\n") + kTriangle + "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nf 1 2 3\n",
-                  folder.path());
+  const ReadObj read(
+      std::string("mtllib a.mtl\n") + kObjTriangle + "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nf 1 2 3\n",
+      folder.path());
   ASSERT_EQ(read.model.materials.size(), 2u);
   EXPECT_TRUE(read.model.materials[static_cast<std::size_t>(read.mesh().parts[0].material)].base_color);
   EXPECT_FALSE(read.model.materials[static_cast<std::size_t>(read.mesh().parts[1].material)].base_color);
 }
 
 TEST(ObjRead, PointsAndLinesAreDroppedAndTold) {
-  const Read read(std::string(kTriangle) + "l 1 2\np 3\nf 1 2 3\ncurv 0 1\n");
+  const ReadObj read(std::string(kObjTriangle) + "l 1 2\np 3\nf 1 2 3\ncurv 0 1\n");
   EXPECT_EQ(told(read.context, "dropped-lines-points"), 2u);
   EXPECT_EQ(told(read.context, "unknown-statement"), 1u);
 }
 
 TEST(ObjRead, ErrorsTellTheLine) {
-  expect_refused(std::string(kTriangle) + "f 0 1 2\n", "test.obj: line 4", "count from 1");
-  expect_refused(std::string(kTriangle) + "f 1 2 4\nf 1 2 3\n", "test.obj: line 4",
-                 "vertex index 4 but there are 3");
-  expect_refused(std::string(kTriangle) + "f 1 2 -4\n", "test.obj: line 4");
-  expect_refused(std::string(kTriangle) + "vt 0 0\nf 1/1 2/2 3/1\n", "test.obj: line 5",
-                 "texture coordinate");
-  expect_refused(std::string(kTriangle) + "f 1 2 3x\n", "test.obj: line 4");
-  expect_refused(std::string(kTriangle) + "f 1 2 99999999999999999999\n", "test.obj: line 4");
-  expect_refused(std::string(kTriangle) + "f 1 2 4294967295\n", "test.obj: line 4");
-  expect_refused("v 0 0\nf 1 1 1\n", "test.obj: line 1", "three numbers");
-  expect_refused("v 0 0 nan\n", "test.obj: line 1", "finite");
-  expect_refused("v 0 0 1e99\n", "test.obj: line 1", "finite");
-  expect_refused("v 0 \\\n 0 zero\n", "test.obj: line 2");
+  expect_obj_refused(std::string(kObjTriangle) + "f 0 1 2\n", "test.obj: line 4", "count from 1");
+  expect_obj_refused(std::string(kObjTriangle) + "f 1 2 4\nf 1 2 3\n", "test.obj: line 4",
+                     "vertex index 4 but there are 3");
+  expect_obj_refused(std::string(kObjTriangle) + "f 1 2 -4\n", "test.obj: line 4");
+  expect_obj_refused(std::string(kObjTriangle) + "vt 0 0\nf 1/1 2/2 3/1\n", "test.obj: line 5",
+                     "texture coordinate");
+  expect_obj_refused(std::string(kObjTriangle) + "f 1 2 3x\n", "test.obj: line 4");
+  expect_obj_refused(std::string(kObjTriangle) + "f 1 2 99999999999999999999\n", "test.obj: line 4");
+  expect_obj_refused(std::string(kObjTriangle) + "f 1 2 4294967295\n", "test.obj: line 4");
+  expect_obj_refused("v 0 0\nf 1 1 1\n", "test.obj: line 1", "three numbers");
+  expect_obj_refused("v 0 0 nan\n", "test.obj: line 1", "finite");
+  expect_obj_refused("v 0 0 1e99\n", "test.obj: line 1", "finite");
+  expect_obj_refused("v 0 \\\n 0 zero\n", "test.obj: line 2");
 }
 
 TEST(ObjRead, FilesWithoutFacesAreUnsupported) {
   Context context;
-  expect_error([&] { read_obj(bytes_of(kTriangle), {}, "test.obj", {}, context); }, ErrorKind::unsupported,
+  expect_error([&] { read_obj(bytes_of(kObjTriangle), {}, "test.obj", {}, context); }, ErrorKind::unsupported,
                "test.obj");
 }
 
@@ -269,7 +271,7 @@ TEST(ObjRead, LimitsAreKept) {
   options.max_elements = 2;
   Context context;
   expect_error(
-      [&] { read_obj(bytes_of(std::string(kTriangle) + "f 1 2 3\n"), {}, "test.obj", options, context); },
+      [&] { read_obj(bytes_of(std::string(kObjTriangle) + "f 1 2 3\n"), {}, "test.obj", options, context); },
       ErrorKind::limit, "test.obj");
 }
 

@@ -11,7 +11,7 @@ using test::bytes_of;
 using test::expect_error;
 using test::told;
 
-void expect_refused(const std::string& text, ErrorKind kind, const std::string& place) {
+void expect_off_refused(const std::string& text, ErrorKind kind, const std::string& place) {
   Context context;
   expect_error([&] { read_off(bytes_of(text), "test.off", {}, context); }, kind, place);
 }
@@ -40,14 +40,14 @@ TEST(OffRead, ColoursAndNormals) {
 }
 
 TEST(OffRead, DamagedFilesAreRefusedWithThePlace) {
-  expect_refused("OFF\n", ErrorKind::format, "test.off: line 2");
-  expect_refused("OFF\n4000000000 1 0\n0 0 0\n", ErrorKind::format, "test.off: line 3");
-  expect_refused("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ErrorKind::format, "test.off: line 6");
-  expect_refused("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999999999 0 1 2\n", ErrorKind::format,
-                 "test.off: line 6");
-  expect_refused("OFF\n3 1 0\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n", ErrorKind::format, "test.off: line 4");
-  expect_refused("OFF BINARY\n", ErrorKind::unsupported, "test.off");
-  expect_refused("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", ErrorKind::unsupported, "test.off");
+  expect_off_refused("OFF\n", ErrorKind::format, "test.off: line 2");
+  expect_off_refused("OFF\n4000000000 1 0\n0 0 0\n", ErrorKind::format, "test.off: line 3");
+  expect_off_refused("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ErrorKind::format, "test.off: line 6");
+  expect_off_refused("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999999999 0 1 2\n", ErrorKind::format,
+                     "test.off: line 6");
+  expect_off_refused("OFF\n3 1 0\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n", ErrorKind::format, "test.off: line 4");
+  expect_off_refused("OFF BINARY\n", ErrorKind::unsupported, "test.off");
+  expect_off_refused("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", ErrorKind::unsupported, "test.off");
 }
 
 TEST(OffRead, Comments) {

@@ -14,18 +14,18 @@ using test::bytes_of;
 using test::expect_error;
 using test::told;
 
-struct Read {
+struct ReadPly {
   Context context;
   Model model;
-  explicit Read(const std::string& text, const std::filesystem::path& folder = "/nonexistent") {
+  explicit ReadPly(const std::string& text, const std::filesystem::path& folder = "/nonexistent") {
     model = read_ply(bytes_of(text), folder, "test.ply", {}, context);
     check(model.meshes.at(0).surface);
   }
   const TriMesh& mesh() const { return model.meshes.at(0).surface; }
 };
 
-void expect_refused(const std::string& text, ErrorKind kind, const std::string& place,
-                    const std::string& message = {}) {
+void expect_ply_refused(const std::string& text, ErrorKind kind, const std::string& place,
+                        const std::string& message = {}) {
   Context context;
   expect_error([&] { read_ply(bytes_of(text), {}, "test.ply", {}, context); }, kind, place, message);
 }
@@ -49,7 +49,7 @@ void put(std::string& to, T value, bool big) {
 }
 
 TEST(PlyRead, AsciiTriangle) {
-  const Read read(ascii(kXyz, 3, kTriangleRows));
+  const ReadPly read(ascii(kXyz, 3, kTriangleRows));
   EXPECT_EQ(read.mesh().positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_EQ(read.mesh().face_count(), 1u);
   EXPECT_EQ(read.model.meshes[0].name, "test");
@@ -81,7 +81,7 @@ TEST(PlyRead, BothByteOrdersAndAllTypes) {
     put<std::uint8_t>(file, 9, big);
     put<std::int32_t>(file, 3, big);
     for (const int i : {0, 1, 2}) put<std::uint16_t>(file, static_cast<std::uint16_t>(i), big);
-    const Read read(file);
+    const ReadPly read(file);
     EXPECT_EQ(read.mesh().positions, (std::vector<Vec3f>{{0, 0, -7}, {1, 0, -7}, {0, 1, -7}})) << big;
     ASSERT_TRUE(read.mesh().find(Semantic::color));
     EXPECT_EQ(read.mesh().find(Semantic::color)->values, (std::vector<float>{1, 0, 1, 1, 0, 1, 1, 0, 1}));
@@ -95,9 +95,10 @@ TEST(PlyRead, BothByteOrdersAndAllTypes) {
 }
 
 TEST(PlyRead, AttributesOfVertices) {
-  const Read read(ascii(kXyz + "property float nx\nproperty float ny\nproperty float nz\nproperty float s\n"
+  const ReadPly read(ascii(kXyz +
+                               "property float nx\nproperty float ny\nproperty float nz\nproperty float s\n"
                                "property float t\nproperty float quality\nproperty float _done\n",
-                        3, "0 0 0 0 0 2 0 0 .5 1\n1 0 0 0 0 2 1 0.25 .25 2\n0 1 0 0 0 2 0 1 7 3\n"));
+                           3, "0 0 0 0 0 2 0 0 .5 1\n1 0 0 0 0 2 1 0.25 .25 2\n0 1 0 0 0 2 0 1 7 3\n"));
   ASSERT_EQ(read.mesh().layers.size(), 4u);
   EXPECT_EQ(read.mesh().find(Semantic::normal)->values, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
   EXPECT_EQ(read.mesh().find(Semantic::uv)->values, (std::vector<float>{0, 1, 1, 0.75f, 0, 0}));
@@ -107,7 +108,7 @@ TEST(PlyRead, AttributesOfVertices) {
 }
 
 TEST(PlyRead, SourceVerticesAreTheRows) {
-  const Read read(ascii(kXyz, 5, "0 0 0\n9 9 9\n1 0 0\n0 1 0\n0 0 0\n", 2, "3 0 2 3\n3 2 4 3\n"));
+  const ReadPly read(ascii(kXyz, 5, "0 0 0\n9 9 9\n1 0 0\n0 1 0\n0 0 0\n", 2, "3 0 2 3\n3 2 4 3\n"));
   const auto& source = read.mesh().source_vertex;
   ASSERT_EQ(source.size(), 5u);
   EXPECT_FALSE(source[1].valid());
@@ -124,7 +125,7 @@ TEST(PlyRead, WedgeTextureCoordinatesAndSeveralTextures) {
       "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
       "property int texnumber\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
       "3 0 1 2 6 0 0 1 0 0 1 1\n3 1 3 2 6 0.5 0.5 1 1 0.5 0 0\n";
-  const Read read(file, folder.path());
+  const ReadPly read(file, folder.path());
   ASSERT_EQ(read.mesh().parts.size(), 2u);
   EXPECT_EQ(read.mesh().parts[0].material, 1);
   EXPECT_EQ(read.mesh().parts[1].material, 0);
@@ -138,11 +139,11 @@ TEST(PlyRead, WedgeTextureCoordinatesAndSeveralTextures) {
 }
 
 TEST(PlyRead, PolygonsAndStrips) {
-  const Read quad(ascii(kXyz, 4, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n", 1, "4 0 1 2 3\n"));
+  const ReadPly quad(ascii(kXyz, 4, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n", 1, "4 0 1 2 3\n"));
   EXPECT_EQ(quad.mesh().face_count(), 2u);
-  const Read strip("ply\nformat ascii 1.0\nelement vertex 5\n" + kXyz +
-                   "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-                   "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 4 -1 0 1 2\n");
+  const ReadPly strip("ply\nformat ascii 1.0\nelement vertex 5\n" + kXyz +
+                      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+                      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 4 -1 0 1 2\n");
   ASSERT_EQ(strip.mesh().face_count(), 4u);
   for (const auto& t : strip.mesh().triangles) {
     const auto p = [&](std::size_t k) { return Vec3d(strip.mesh().positions[t[k].index()]); };
@@ -151,8 +152,8 @@ TEST(PlyRead, PolygonsAndStrips) {
 }
 
 TEST(PlyRead, SmallFacesAreDroppedAndBadNormalsMadeAnew) {
-  const Read read(ascii(kXyz + "property float nx\nproperty float ny\nproperty float nz\n", 3,
-                        "0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 nan 0 0\n", 2, "2 0 1\n3 0 1 2\n"));
+  const ReadPly read(ascii(kXyz + "property float nx\nproperty float ny\nproperty float nz\n", 3,
+                           "0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 nan 0 0\n", 2, "2 0 1\n3 0 1 2\n"));
   EXPECT_EQ(told(read.context, "small-faces"), 1u);
   EXPECT_EQ(told(read.context, "bad-normals"), 2u);
   EXPECT_EQ(read.mesh().find(Semantic::normal)->values, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
@@ -161,47 +162,48 @@ TEST(PlyRead, SmallFacesAreDroppedAndBadNormalsMadeAnew) {
 TEST(PlyRead, ForgottenWordCommentIsForgiven) {
   std::string file = ascii(kXyz, 3, kTriangleRows);
   file.insert(file.find("element"), "Created by some program\nobj_info made in 1994\n");
-  EXPECT_EQ(Read(file).mesh().face_count(), 1u);
+  EXPECT_EQ(ReadPly(file).mesh().face_count(), 1u);
 }
 
 TEST(PlyRead, PointCloudsAreUnsupported) {
-  expect_refused(ascii(kXyz, 3, kTriangleRows, 0, ""), ErrorKind::unsupported, "test.ply", "no triangles");
+  expect_ply_refused(ascii(kXyz, 3, kTriangleRows, 0, ""), ErrorKind::unsupported, "test.ply",
+                     "no triangles");
 }
 
 TEST(PlyRead, DamagedFilesAreRefusedWithThePlace) {
-  expect_refused("ply\nformat ascii 1.0\n", ErrorKind::format, "test.ply: line 3", "no end");
-  expect_refused("ply\nend_header\n", ErrorKind::format, "test.ply", "no format");
-  expect_refused("ply\nformat morse 1.0\nend_header\n", ErrorKind::format, "test.ply: line 2");
-  expect_refused("ply\nformat ascii 1.0\nelement vertex\nend_header\n", ErrorKind::format,
-                 "test.ply: line 3");
-  expect_refused("ply\nformat ascii 1.0\nproperty float x\nend_header\n", ErrorKind::format,
-                 "test.ply: line 3");
-  expect_refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n", ErrorKind::format,
-                 "test.ply: line 4");
-  expect_refused(ascii("property float x\nproperty float y\n", 3, "0 0\n0 0\n0 0\n"), ErrorKind::format,
-                 "test.ply", "x, y, z");
-  expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 3\n"), ErrorKind::format, "test.ply: line 13",
-                 "index 3");
-  expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 -1\n"), ErrorKind::format, "test.ply: line 13");
-  expect_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1"), ErrorKind::format, "test.ply",
-                 "longer than the file");
-  expect_refused(ascii(kXyz, 3, "0 0 0\n1 0 here\n0 1 0\n"), ErrorKind::format, "test.ply: line 11",
-                 "not a number");
-  expect_refused(ascii(kXyz, 3, "0 0 0\n1 0 inf\n0 1 0\n"), ErrorKind::format, "test.ply", "finite");
+  expect_ply_refused("ply\nformat ascii 1.0\n", ErrorKind::format, "test.ply: line 3", "no end");
+  expect_ply_refused("ply\nend_header\n", ErrorKind::format, "test.ply", "no format");
+  expect_ply_refused("ply\nformat morse 1.0\nend_header\n", ErrorKind::format, "test.ply: line 2");
+  expect_ply_refused("ply\nformat ascii 1.0\nelement vertex\nend_header\n", ErrorKind::format,
+                     "test.ply: line 3");
+  expect_ply_refused("ply\nformat ascii 1.0\nproperty float x\nend_header\n", ErrorKind::format,
+                     "test.ply: line 3");
+  expect_ply_refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n",
+                     ErrorKind::format, "test.ply: line 4");
+  expect_ply_refused(ascii("property float x\nproperty float y\n", 3, "0 0\n0 0\n0 0\n"), ErrorKind::format,
+                     "test.ply", "x, y, z");
+  expect_ply_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 3\n"), ErrorKind::format, "test.ply: line 13",
+                     "index 3");
+  expect_ply_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1 -1\n"), ErrorKind::format, "test.ply: line 13");
+  expect_ply_refused(ascii(kXyz, 3, kTriangleRows, 1, "3 0 1"), ErrorKind::format, "test.ply",
+                     "longer than the file");
+  expect_ply_refused(ascii(kXyz, 3, "0 0 0\n1 0 here\n0 1 0\n"), ErrorKind::format, "test.ply: line 11",
+                     "not a number");
+  expect_ply_refused(ascii(kXyz, 3, "0 0 0\n1 0 inf\n0 1 0\n"), ErrorKind::format, "test.ply", "finite");
 }
 
 TEST(PlyRead, CountsBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
   const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex ";
   const std::string rest = "\n" + kXyz + "end_header\nabc";
   for (const char* count : {"2", "1000000000000", "4294967296", "18446744073709551615"}) {
-    expect_refused(head + count + rest, ErrorKind::format, "test.ply: header", "bytes follow");
+    expect_ply_refused(head + count + rest, ErrorKind::format, "test.ply: header", "bytes follow");
   }
-  expect_refused(head + "99999999999999999999999" + rest, ErrorKind::format, "test.ply: line 3");
+  expect_ply_refused(head + "99999999999999999999999" + rest, ErrorKind::format, "test.ply: line 3");
   // A list of 4294967295 numbers in a file of some bytes.
-  expect_refused("ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + kXyz +
-                     "element face 1\nproperty list uint double vertex_indices\nend_header\n" +
-                     std::string(12, '\0') + "\xFF\xFF\xFF\xFF",
-                 ErrorKind::format, "test.ply: byte", "longer than the file");
+  expect_ply_refused("ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + kXyz +
+                         "element face 1\nproperty list uint double vertex_indices\nend_header\n" +
+                         std::string(12, '\0') + "\xFF\xFF\xFF\xFF",
+                     ErrorKind::format, "test.ply: byte", "longer than the file");
   // An element without properties takes no bytes: any count is harmless, and must not be counted out.
   std::string empty = ascii(kXyz, 3, kTriangleRows);
   empty.insert(empty.find("element face"), "element nothing 18446744073709551615\n");

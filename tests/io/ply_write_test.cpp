@@ -13,12 +13,12 @@ namespace {
 using test::model_of;
 using test::TempFolder;
 
-struct RoundTrip {
+struct PlyRoundTrip {
   TempFolder folder;
   Context context;
   std::vector<OutputFile> files;
   Model model;
-  explicit RoundTrip(const Model& from) {
+  explicit PlyRoundTrip(const Model& from) {
     files = write_ply(from, "out", context);
     for (const OutputFile& file : files) {
       folder.add(file.name.empty() ? "out.ply" : file.name, test::text_of(file.bytes));
@@ -33,7 +33,7 @@ struct RoundTrip {
 
 TEST(PlyWrite, RoundTripKeepsEveryBit) {
   for (const TriMesh& mesh : {test::cube(), test::grid(4, 4), test::icosphere(1), test::tetrahedron()}) {
-    const RoundTrip trip(model_of(mesh));
+    const PlyRoundTrip trip(model_of(mesh));
     EXPECT_EQ(test::corner_soup(trip.mesh()), test::corner_soup(mesh));
     EXPECT_TRUE(trip.context.diagnostics().empty());
   }
@@ -55,7 +55,7 @@ TEST(PlyWrite, FieldsAndColoursSurvive) {
   color.corner_value = corners;
   mesh.layers.push_back(field);
   mesh.layers.push_back(color);
-  const RoundTrip trip(model_of(mesh));
+  const PlyRoundTrip trip(model_of(mesh));
   EXPECT_EQ(trip.mesh().find(Semantic::color)->values, color.values);
   EXPECT_EQ(trip.mesh().layers.back().name, "_quality");
   EXPECT_EQ(trip.mesh().layers.back().values, field.values);
@@ -65,7 +65,7 @@ TEST(PlyWrite, FieldsAndColoursSurvive) {
 TEST(PlyWrite, MirroredInstancesFaceOutwards) {
   Model model = model_of(test::tetrahedron());
   model.nodes[0].scale = {-1, 1, 1};
-  const RoundTrip trip(model);
+  const PlyRoundTrip trip(model);
   const auto volume = [](const TriMesh& mesh) {
     double sum = 0;
     for (const auto& t : mesh.triangles) {
@@ -102,7 +102,7 @@ Model textured(std::size_t images) {
 }
 
 TEST(PlyWrite, OneBaseColourImageComesAlong) {
-  const RoundTrip trip(textured(1));
+  const PlyRoundTrip trip(textured(1));
   ASSERT_EQ(trip.files.size(), 2u);
   EXPECT_EQ(trip.files[1].name, "paint 0.png");
   EXPECT_NE(trip.text().find("comment TextureFile paint 0.png\n"), std::string::npos);

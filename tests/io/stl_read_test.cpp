@@ -46,7 +46,7 @@ Model read(const std::string& file) {
   return model;
 }
 
-void expect_refused(const std::string& file, ErrorKind kind, const std::string& place) {
+void expect_stl_refused(const std::string& file, ErrorKind kind, const std::string& place) {
   Context context;
   expect_error([&] { read_stl(bytes_of(file), "test.stl", {}, context); }, kind, place);
 }
@@ -65,16 +65,16 @@ TEST(StlRead, TextAndBinaryWeldEqually) {
 }
 
 TEST(StlRead, DamagedFilesAreRefusedWithThePlace) {
-  expect_refused(binary(3, {{0, 0, 0, 1, 0, 0, 0, 1, 0}}, "x"), ErrorKind::format, "test.stl: byte 80");
-  expect_refused(binary(0xFFFFFFFF, {}, "x"), ErrorKind::format, "test.stl: byte 80");
-  expect_refused("x", ErrorKind::format, "test.stl");
-  expect_refused(binary(0, {}), ErrorKind::unsupported, "test.stl");
-  expect_refused(binary(1, {{0, 0, 0, std::numeric_limits<float>::quiet_NaN(), 0, 0, 0, 1, 0}}),
-                 ErrorKind::format, "test.stl: byte 108");
-  expect_refused("solid\nfacet normal 0 0 1\nvertex 0 0\n", ErrorKind::format, "test.stl: line 3");
-  expect_refused("solid\nfacet normal 0 0 1\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", ErrorKind::format,
-                 "test.stl: line 5");
-  expect_refused("solid\nfacet normal 0 0 1\nvertex 0 0 0\n", ErrorKind::format, "test.stl: line 4");
+  expect_stl_refused(binary(3, {{0, 0, 0, 1, 0, 0, 0, 1, 0}}, "x"), ErrorKind::format, "test.stl: byte 80");
+  expect_stl_refused(binary(0xFFFFFFFF, {}, "x"), ErrorKind::format, "test.stl: byte 80");
+  expect_stl_refused("x", ErrorKind::format, "test.stl");
+  expect_stl_refused(binary(0, {}), ErrorKind::unsupported, "test.stl");
+  expect_stl_refused(binary(1, {{0, 0, 0, std::numeric_limits<float>::quiet_NaN(), 0, 0, 0, 1, 0}}),
+                     ErrorKind::format, "test.stl: byte 108");
+  expect_stl_refused("solid\nfacet normal 0 0 1\nvertex 0 0\n", ErrorKind::format, "test.stl: line 3");
+  expect_stl_refused("solid\nfacet normal 0 0 1\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", ErrorKind::format,
+                     "test.stl: line 5");
+  expect_stl_refused("solid\nfacet normal 0 0 1\nvertex 0 0 0\n", ErrorKind::format, "test.stl: line 4");
 }
 
 }  // namespace

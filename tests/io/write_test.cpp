@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::byte> bytes_of(const std::string& text) {
+std::vector<std::byte> text_bytes(const std::string& text) {
   std::vector<std::byte> result;
   for (const char c : text) result.push_back(static_cast<std::byte>(c));
   return result;
@@ -67,7 +67,7 @@ class Write : public ::testing::Test {
 
 TEST_F(Write, AllFilesStandInTheirPlacesAndNothingElse) {
   const std::vector<OutputFile> files_to_write = {
-      {"", bytes_of("main")}, {"side.bin", bytes_of("side")}, {"a/b/c.png", {}}};
+      {"", text_bytes("main")}, {"side.bin", text_bytes("side")}, {"a/b/c.png", {}}};
   write_files(folder_ / "out.gltf", files_to_write, false);
   EXPECT_EQ(files(), (std::vector<std::string>{"a", "a/b", "a/b/c.png", "out.gltf", "side.bin"}));
   EXPECT_EQ(content(folder_ / "out.gltf"), "main");
@@ -75,8 +75,8 @@ TEST_F(Write, AllFilesStandInTheirPlacesAndNothingElse) {
 }
 
 TEST_F(Write, ExistingFilesAreOnlyReplacedWithForce) {
-  const std::vector<OutputFile> old_files = {{"", bytes_of("old")}, {"side", bytes_of("old side")}};
-  const std::vector<OutputFile> new_files = {{"", bytes_of("new")}, {"side", bytes_of("new side")}};
+  const std::vector<OutputFile> old_files = {{"", text_bytes("old")}, {"side", text_bytes("old side")}};
+  const std::vector<OutputFile> new_files = {{"", text_bytes("new")}, {"side", text_bytes("new side")}};
   write_files(folder_ / "x", old_files, false);
   const Error error = error_of([&] { write_files(folder_ / "x", new_files, false); });
   EXPECT_EQ(error.kind(), ErrorKind::usage);
@@ -89,20 +89,20 @@ TEST_F(Write, ExistingFilesAreOnlyReplacedWithForce) {
 }
 
 TEST_F(Write, ASideFileThatIsThereAlreadyIsLeftAlone) {
-  write_files(folder_ / "image.png", std::vector<OutputFile>{{"", bytes_of("pixels")}}, false);
+  write_files(folder_ / "image.png", std::vector<OutputFile>{{"", text_bytes("pixels")}}, false);
   const auto before = fs::last_write_time(folder_ / "image.png");
   write_files(folder_ / "out",
-              std::vector<OutputFile>{{"", bytes_of("main")}, {"image.png", bytes_of("pixels")}}, false);
+              std::vector<OutputFile>{{"", text_bytes("main")}, {"image.png", text_bytes("pixels")}}, false);
   EXPECT_EQ(fs::last_write_time(folder_ / "image.png"), before);
-  const auto other = std::vector<OutputFile>{{"", bytes_of("main")}, {"image.png", bytes_of("pixelS")}};
+  const auto other = std::vector<OutputFile>{{"", text_bytes("main")}, {"image.png", text_bytes("pixelS")}};
   EXPECT_EQ(error_of([&] { write_files(folder_ / "other", other, false); }).kind(), ErrorKind::usage);
   EXPECT_FALSE(fs::exists(folder_ / "other"));
 }
 
 TEST_F(Write, ReplacedFilesKeepTheirPermissions) {
-  write_files(folder_ / "x", std::vector<OutputFile>{{"", bytes_of("old")}}, false);
+  write_files(folder_ / "x", std::vector<OutputFile>{{"", text_bytes("old")}}, false);
   fs::permissions(folder_ / "x", fs::perms::owner_read | fs::perms::owner_write);
-  write_files(folder_ / "x", std::vector<OutputFile>{{"", bytes_of("new")}}, true);
+  write_files(folder_ / "x", std::vector<OutputFile>{{"", text_bytes("new")}}, true);
   EXPECT_EQ(fs::status(folder_ / "x").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
@@ -129,9 +129,9 @@ TEST_F(Write, DevicesAreNotReplaced) {
 
 TEST_F(Write, NothingIsLeftBehindOnFailure) {
   // The second side file cannot be made: a file stands where its folder should be.
-  write_files(folder_ / "blocked", std::vector<OutputFile>{{"", bytes_of("x")}}, false);
+  write_files(folder_ / "blocked", std::vector<OutputFile>{{"", text_bytes("x")}}, false);
   const std::vector<OutputFile> out = {
-      {"", bytes_of("main")}, {"new/side", bytes_of("s")}, {"blocked/side", bytes_of("s")}};
+      {"", text_bytes("main")}, {"new/side", text_bytes("s")}, {"blocked/side", text_bytes("s")}};
   EXPECT_EQ(error_of([&] { write_files(folder_ / "out", out, true); }).kind(), ErrorKind::output);
   EXPECT_EQ(files(), std::vector<std::string>{"blocked"});
 }
@@ -143,7 +143,7 @@ TEST_F(Write, AFullDiskIsAnErrorAndLeavesNothing) {
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   const rlimit small{4096, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  const std::vector<OutputFile> out = {{"", bytes_of("main")}, {"side", std::vector<std::byte>(1 << 20)}};
+  const std::vector<OutputFile> out = {{"", text_bytes("main")}, {"side", std::vector<std::byte>(1 << 20)}};
   const Error error = error_of([&] { write_files(folder_ / "x", out, false); });
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);

@@ -46,7 +46,7 @@ std::vector<std::vector<std::string>> soup(const Leveled& model, const Cut& cut)
   return test::corner_soup(level_of(model.original, model.levels, cut).meshes.at(0).surface);
 }
 
-Cut random_cut(const MultiTessellation& levels, std::uint64_t seed) {
+Cut sparse_cut(const MultiTessellation& levels, std::uint64_t seed) {
   Random random(seed);
   Cut cut(levels.step_count(), 0);
   for (std::size_t s = 0; s < cut.size(); ++s) {
@@ -94,7 +94,7 @@ TEST(LevelsFile, StepsNeedTheSame) {
     for (std::size_t s = 0; s < back.levels.step_count(); ++s)
       EXPECT_THAT(back.levels.needs_of(s), testing::ElementsAreArray(model.levels.needs_of(s))) << name;
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
-      Cut cut = random_cut(back.levels, seed);
+      Cut cut = sparse_cut(back.levels, seed);
       const auto level = soup(back, cut);
       cut.resize(model.levels.step_count(), 0);
       EXPECT_EQ(level, soup(model, cut)) << name << " " << seed;

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-LodChain chain_of(const Model& model, LodChainOptions options = test::quick_chain()) {
+LodChain gltf_chain_of(const Model& model, LodChainOptions options = test::quick_chain()) {
   Context context;
   return make_lod_chain(model, options, {}, context);
 }
@@ -63,7 +63,7 @@ TEST(LodGltf, TheNodeNamesItsLevels) {
   model.nodes[0].translation = {1, 2, 3};
   model.nodes[0].name = "ball";
   model.nodes[0].json = R"({"extras":{"mine":1}})";
-  const LodChain chain = chain_of(model);
+  const LodChain chain = gltf_chain_of(model);
   const Model all = merged(chain);
   ASSERT_EQ(all.nodes.size(), 4U);
   EXPECT_EQ(levels_of(all.nodes[0]), (std::vector<int>{1, 2, 3}));
@@ -99,7 +99,7 @@ TEST(LodGltf, LevelsMayShareTheirVertices) {
     options.simplify.placement = Placement::half_edge;
     options.textures_follow = false;
     for (Vec3f& p : model.meshes[0].surface.positions) p.z += 0.1f * std::sin(7 * p.x) * std::sin(5 * p.y);
-    const LodChain chain = chain_of(model, options);
+    const LodChain chain = gltf_chain_of(model, options);
     ASSERT_GE(chain.levels.size(), 3U);
     Context context;
     std::vector<int> level_of;
@@ -132,7 +132,7 @@ TEST(LodGltf, LevelsMayShareTheirVertices) {
 TEST(LodGltf, SharedVerticesHaveOneGrid) {
   LodChainOptions options = test::quick_chain();
   options.simplify.placement = Placement::half_edge;
-  const LodChain chain = chain_of(test::model_of(test::icosphere(3)), options);
+  const LodChain chain = gltf_chain_of(test::model_of(test::icosphere(3)), options);
   Context context;
   std::vector<int> level_of;
   const Model all = with_lods(chain, 0, context, &level_of);
@@ -160,7 +160,7 @@ TEST(LodGltf, VerticesOfMeshesThatAreNotThereAreRefused) {
 }
 
 TEST(LodGltf, CoverageHasOneMoreAndFalls) {
-  const LodChain chain = chain_of(test::model_of(test::icosphere(3)));
+  const LodChain chain = gltf_chain_of(test::model_of(test::icosphere(3)));
   const double vanish = chain.levels.back().coverage / 2;
   const Model all = merged(chain, vanish);
   const std::vector<double> coverage = coverage_of(all.nodes[0]);
@@ -175,7 +175,7 @@ TEST(LodGltf, CoverageHasOneMoreAndFalls) {
 
 TEST(LodGltf, LevelsShareTheSkin) {
   const Model model = test::skinned_model(64);
-  const Model all = merged(chain_of(model));
+  const Model all = merged(gltf_chain_of(model));
   EXPECT_EQ(all.skins.size(), 1U);
   for (const int level : levels_of(all.nodes[0])) {
     EXPECT_EQ(all.nodes[static_cast<std::size_t>(level)].skin, 0);
@@ -188,7 +188,7 @@ TEST(LodGltf, WhatMovesANodeMovesItsLevels) {
   model.nodes[0].name = "ball";
   model.nodes[0].scale = {2, 2, 2};
   model.animations = {moving({channel(0, "translation")}, 3)};
-  const Model all = merged(chain_of(model));
+  const Model all = merged(gltf_chain_of(model));
   // The node keeps its transform and its animation, and its mesh goes to a child that names the levels.
   EXPECT_EQ(all.animations[0].channels.size(), 1U);
   EXPECT_EQ(all.animations[0].channels[0].node, 0);
@@ -213,7 +213,7 @@ TEST(LodGltf, MorphWeightsOfLevelsFollow) {
   model.animations = {moving({channel(0, "weights")}, 2)};
   LodChainOptions options = test::quick_chain();
   options.levels = 3;
-  const LodChain chain = chain_of(model, options);
+  const LodChain chain = gltf_chain_of(model, options);
   const Model all = merged(chain);
   const std::vector<int> levels = levels_of(all.nodes[0]);
   ASSERT_EQ(all.animations[0].channels.size(), 1 + levels.size());
@@ -223,7 +223,7 @@ TEST(LodGltf, MorphWeightsOfLevelsFollow) {
   }
   // Also where the node's transform is animated, and the mesh has moved to a child.
   model.animations = {moving({channel(0, "translation"), channel(0, "weights")}, 3)};
-  const Model moved = merged(chain_of(model, options));
+  const Model moved = merged(gltf_chain_of(model, options));
   const int child = moved.nodes[0].children.at(0);
   EXPECT_EQ(moved.animations[0].channels[0].node, 0);
   EXPECT_EQ(moved.animations[0].channels[1].node, child);
@@ -235,7 +235,7 @@ TEST(LodGltf, ChildrenStayWithTheNode) {
   Model model = test::model_of({test::icosphere(3), test::torus(24, 12)});
   model.nodes[0].children = {1};
   model.scenes[0].nodes = {0};
-  const Model all = merged(chain_of(model));
+  const Model all = merged(gltf_chain_of(model));
   EXPECT_EQ(all.nodes[0].mesh, -1);
   ASSERT_EQ(all.nodes[0].children.size(), 2U);
   EXPECT_EQ(all.nodes[0].children[0], 1);
@@ -246,7 +246,7 @@ TEST(LodGltf, InstancesGoWithTheMesh) {
   Model model = test::model_of(test::icosphere(3));
   model.nodes[0].instances = {compose({1, 0, 0}, {}, {1, 1, 1}), compose({9, 0, 0}, {}, {1, 1, 1})};
   model.animations = {moving({channel(0, "scale")}, 3)};
-  const Model all = merged(chain_of(model));
+  const Model all = merged(gltf_chain_of(model));
   EXPECT_TRUE(all.nodes[0].instances.empty());
   const Node& shown = all.nodes[static_cast<std::size_t>(all.nodes[0].children.at(0))];
   EXPECT_EQ(shown.instances, model.nodes[0].instances);
@@ -261,7 +261,7 @@ TEST(LodGltf, LevelsShareImagesThatAreTheSame) {
   const Model model = test::textured(test::wavy_grid(16, 16, 0.1), 2);
   LodChainOptions options = test::quick_chain();
   options.textures_follow = false;
-  const Model kept = merged(chain_of(model, options));
+  const Model kept = merged(gltf_chain_of(model, options));
   EXPECT_EQ(kept.images, model.images);
   EXPECT_EQ(kept.materials.size(), model.materials.size());
 
@@ -269,7 +269,7 @@ TEST(LodGltf, LevelsShareImagesThatAreTheSame) {
   options.screen.height = 64;
   options.screen.pixel_error = 4;
   options.coverages = {0.4, 0.2};
-  const LodChain chain = chain_of(model, options);
+  const LodChain chain = gltf_chain_of(model, options);
   const Model all = merged(chain);
   ASSERT_EQ(chain.levels.size(), 3U);
   const std::vector<int> levels = levels_of(all.nodes[0]);
@@ -296,7 +296,7 @@ TEST(LodGltf, MaterialsOfVariantsAndExtensionsFollowTheirImages) {
   options.screen.height = 64;
   options.screen.pixel_error = 4;
   options.coverages = {0.2};
-  const Model all = merged(chain_of(model, options));
+  const Model all = merged(gltf_chain_of(model, options));
   const Node& level = all.nodes[static_cast<std::size_t>(levels_of(all.nodes[0]).at(0))];
   const Part& part = all.meshes[static_cast<std::size_t>(level.mesh)].surface.parts[0];
   const int material =
@@ -312,7 +312,7 @@ TEST(LodGltf, AModelWithoutScenesGetsOneWithoutTheLevels) {
   Model model = test::model_of(test::icosphere(3));
   model.scenes.clear();
   model.default_scene = -1;
-  const Model all = merged(chain_of(model));
+  const Model all = merged(gltf_chain_of(model));
   ASSERT_EQ(all.scenes.size(), 1U);
   EXPECT_EQ(all.scenes[0].nodes, std::vector<int>{0});
   EXPECT_EQ(counts(all).triangles_drawn, 1280U);
@@ -323,7 +323,7 @@ TEST(LodGltf, MeshesThatDoNotChangeAreShared) {
   const Model model = test::model_of({test::icosphere(3), test::single_triangle()});
   LodChainOptions options = test::quick_chain();
   options.levels = 3;
-  const Model all = merged(chain_of(model, options));
+  const Model all = merged(gltf_chain_of(model, options));
   EXPECT_EQ(all.meshes.size(), 4U);
   EXPECT_TRUE(all.nodes[1].json.empty());
 }

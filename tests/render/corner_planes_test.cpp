@@ -13,7 +13,6 @@
 namespace fovea {
 namespace {
 
-constexpr std::int32_t kOne = kSubsamples;
 constexpr int kSize = 96;
 constexpr Float4 kUnits = {1, 1, 1, 1};
 using Corners = std::array<ScreenVertex, 3>;
@@ -54,7 +53,7 @@ std::array<double, 3> weights_on_ray(const Projection& projection, const std::ar
 
 /// Weights of the corners on the screen, in double precision.
 std::array<double, 3> weights_on_screen(const Corners& v, int pixel_x, int pixel_y) {
-  const double x = (pixel_x + 0.5) * kOne, y = (pixel_y + 0.5) * kOne;
+  const double x = (pixel_x + 0.5) * kSubsamples, y = (pixel_y + 0.5) * kSubsamples;
   std::array<double, 3> weights;
   for (std::size_t k = 0; k < 3; ++k) {
     const ScreenVertex &p = v[(k + 1) % 3], &q = v[(k + 2) % 3];
@@ -72,7 +71,7 @@ double least_height(const Corners& v) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k)
     longest = std::max(longest, std::hypot(v[k].x - v[(k + 1) % 3].x, v[k].y - v[(k + 1) % 3].y));
-  return longest > 0 ? std::abs(static_cast<double>(double_area(v))) / longest / kOne : 0;
+  return longest > 0 ? std::abs(static_cast<double>(double_area(v))) / longest / kSubsamples : 0;
 }
 
 /// Calls pixel(x, y) for those that a triangle covers.
@@ -93,7 +92,7 @@ double rounding(const Corners& v) { return 3 * kSize / least_height(v) * 0x1p-22
 double tolerance(const Corners& v, bool perspective) {
   const auto [low, high] = std::minmax({v[0].nearness, v[1].nearness, v[2].nearness});
   const double share = perspective ? static_cast<double>(high / low) : 1;
-  return share * (3 * 2 * std::sqrt(0.5) / kOne / least_height(v) + rounding(v));
+  return share * (3 * 2 * std::sqrt(0.5) / kSubsamples / least_height(v) + rounding(v));
 }
 
 /// Compares a triangle in a view with rays; how many of its pixels were compared.
@@ -134,9 +133,9 @@ TEST(CornerPlanes, AreWhatRaysMeet) {
 
 //  near (1) *---m---*---*---* far (3)     what is in the middle of a beam's picture is a quarter along it
 TEST(CornerPlanes, FarHalvesOfAPictureAreLonger) {
-  const Corners v{{{kOne / 2, kOne / 2, 1},
-                   {kOne / 2 + 8 * kOne, kOne / 2, 1.0f / 3},
-                   {kOne / 2, kOne / 2 + 8 * kOne, 1}}};
+  const Corners v{{{kSubsamples / 2, kSubsamples / 2, 1},
+                   {kSubsamples / 2 + 8 * kSubsamples, kSubsamples / 2, 1.0f / 3},
+                   {kSubsamples / 2, kSubsamples / 2 + 8 * kSubsamples, 1}}};
   const CornerPlanes planes(v, true);
   const Float4 zero = {0, 0, 0, 0};
   const float along = planes.plane({zero, kUnits, zero})(4, 0)[0];
@@ -150,7 +149,7 @@ TEST(CornerPlanes, OnesAreTheNearness) {
   for (int i = 0; i < 200; ++i) {
     Corners v;
     for (ScreenVertex& c : v) {
-      const auto place = [&] { return static_cast<std::int32_t>(random.below(kSize * kOne)); };
+      const auto place = [&] { return static_cast<std::int32_t>(random.below(kSize * kSubsamples)); };
       c = {place(), place(), static_cast<float>(random.uniform(0.5, 2))};
     }
     if (least_height(v) < 2) continue;
@@ -169,7 +168,7 @@ TEST(CornerPlanes, InParallelProjectionNumbersAreAffineOnTheScreen) {
   for (int i = 0; i < 200; ++i) {
     Corners v;
     for (ScreenVertex& c : v) {
-      const auto place = [&] { return static_cast<std::int32_t>(random.below(kSize * kOne)); };
+      const auto place = [&] { return static_cast<std::int32_t>(random.below(kSize * kSubsamples)); };
       c = {place(), place(), static_cast<float>(random.uniform(-9, -1))};  // which plays no part
     }
     if (least_height(v) < 2) continue;
@@ -186,9 +185,9 @@ TEST(CornerPlanes, InParallelProjectionNumbersAreAffineOnTheScreen) {
 
 TEST(CornerPlanes, CornersHaveTheirNumbers) {
   // In the middles of pixels; either winding.
-  const ScreenVertex a{5 * kOne + kOne / 2, 7 * kOne + kOne / 2, 1},
-      b{60 * kOne + kOne / 2, 20 * kOne + kOne / 2, 0.25f},
-      c{33 * kOne + kOne / 2, 90 * kOne + kOne / 2, 0.5f};
+  const ScreenVertex a{5 * kSubsamples + kSubsamples / 2, 7 * kSubsamples + kSubsamples / 2, 1},
+      b{60 * kSubsamples + kSubsamples / 2, 20 * kSubsamples + kSubsamples / 2, 0.25f},
+      c{33 * kSubsamples + kSubsamples / 2, 90 * kSubsamples + kSubsamples / 2, 0.5f};
   Random random(44);
   const std::array<Float4, 3> numbers = random_numbers(random);
   for (const bool perspective : {false, true}) {
@@ -197,7 +196,7 @@ TEST(CornerPlanes, CornersHaveTheirNumbers) {
       const CornerPlanes planes(v, perspective);
       const CornerPlanes::Plane plane = planes.plane(numbers), ones = planes.plane({kUnits, kUnits, kUnits});
       for (std::size_t k = 0; k < 3; ++k) {
-        const int x = v[k].x / kOne, y = v[k].y / kOne;
+        const int x = v[k].x / kSubsamples, y = v[k].y / kSubsamples;
         for (int lane = 0; lane < 4; ++lane) {
           // Rounding in single precision of a few numbers of up to 3.
           EXPECT_NEAR(plane(x, y)[lane] / ones(x, y)[lane], numbers[k][lane], 5e-6);

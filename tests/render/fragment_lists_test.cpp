@@ -15,12 +15,11 @@
 namespace fovea {
 namespace {
 
-constexpr std::int32_t kOne = kSubsamples;
 using Corners = std::array<ScreenVertex, 3>;
 
 /// A triangle that covers a picture of up to 64 × 64 pixels, everywhere equally near.
 Corners wall(float nearness) {
-  constexpr std::int32_t kFar = 1000 * kOne;
+  constexpr std::int32_t kFar = 1000 * kSubsamples;
   return {{{-kFar, -kFar, nearness}, {kFar, -kFar, nearness}, {0, kFar, nearness}}};
 }
 
@@ -28,13 +27,14 @@ Corners wall(float nearness) {
 /// through the middles of pixels.
 Corners random_triangle(Random& random, int size) {
   Corners corners;
-  const std::int32_t steps[] = {1, kOne / 2, kOne};
+  const std::int32_t steps[] = {1, kSubsamples / 2, kSubsamples};
   const std::int32_t step = steps[random.below(3)];
   const bool is_flat = random.below(3) == 0;
   const auto flat = static_cast<float>(1 + random.below(3));
   const auto place = [&] {
-    const auto at = static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(2 * size * kOne)));
-    return (at - size * kOne / 2) / step * step + kOne / 2;
+    const auto at =
+        static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(2 * size * kSubsamples)));
+    return (at - size * kSubsamples / 2) / step * step + kSubsamples / 2;
   };
   for (ScreenVertex& v : corners)
     v = {place(), place(), is_flat ? flat : static_cast<float>(random.uniform(1, 4))};
@@ -63,7 +63,8 @@ const auto kSolid = rows([](int, int, std::uint32_t&) { return true; });
 
 /// Inside by the sign of three cross products; on an edge only at the top or left. Literal and slow.
 bool is_inside(Corners v, int pixel_x, int pixel_y) {
-  const std::int64_t x = std::int64_t{pixel_x} * kOne + kOne / 2, y = std::int64_t{pixel_y} * kOne + kOne / 2;
+  const std::int64_t x = std::int64_t{pixel_x} * kSubsamples + kSubsamples / 2,
+                     y = std::int64_t{pixel_y} * kSubsamples + kSubsamples / 2;
   const auto side = [](const ScreenVertex& p, const ScreenVertex& q, std::int64_t px, std::int64_t py) {
     return (std::int64_t{q.x} - p.x) * (py - p.y) - (std::int64_t{q.y} - p.y) * (px - p.x);
   };
@@ -83,13 +84,13 @@ struct Nearness {
 
 /// Nearness in the middle of a pixel, by the weights of the corners in double precision.
 Nearness nearness_at(const Corners& v, int pixel_x, int pixel_y, int width) {
-  const double x = (pixel_x + 0.5) * kOne, y = (pixel_y + 0.5) * kOne;
+  const double x = (pixel_x + 0.5) * kSubsamples, y = (pixel_y + 0.5) * kSubsamples;
   double value = 0, slope = 0, nearest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const ScreenVertex &p = v[(k + 1) % 3], &q = v[(k + 2) % 3];
     const double share = static_cast<double>(v[k].nearness) / static_cast<double>(double_area(v));
     value += ((q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x)) * share;
-    slope -= (q.y - p.y) * share * kOne;
+    slope -= (q.y - p.y) * share * kSubsamples;
     nearest = std::max(nearest, static_cast<double>(v[k].nearness));
   }
   // A row starts at its left end in single precision: a slope across the picture is rounded there.
@@ -289,11 +290,15 @@ TEST(FragmentLists, ATriangleOfHolesLeavesNoTrace) {
 TEST(FragmentLists, TrianglesOffThePictureOrWithoutAreaAreNowhere) {
   constexpr std::int32_t kFar = 1 << 28;  // as far as vertices are put
   const Corners nowhere[] = {
-      {{{5 * kOne, 0, 1}, {9 * kOne, 0, 1}, {7 * kOne, 4 * kOne, 1}}},
-      {{{-kFar, -kFar, 1}, {kFar, -kFar, 1}, {0, -kOne, 1}}},
-      {{{0, 0, 1}, {2 * kOne, 2 * kOne, 1}, {4 * kOne, 4 * kOne, 1}}},
-      {{{kOne / 2, kOne / 2, 1}, {kOne / 2, kOne / 2, 1}, {kOne / 2, kOne / 2, 1}}},
-      {{{kOne, kOne, 1}, {kOne + 100, kOne, 1}, {kOne, kOne + 100, 1}}},  // between the middles of pixels
+      {{{5 * kSubsamples, 0, 1}, {9 * kSubsamples, 0, 1}, {7 * kSubsamples, 4 * kSubsamples, 1}}},
+      {{{-kFar, -kFar, 1}, {kFar, -kFar, 1}, {0, -kSubsamples, 1}}},
+      {{{0, 0, 1}, {2 * kSubsamples, 2 * kSubsamples, 1}, {4 * kSubsamples, 4 * kSubsamples, 1}}},
+      {{{kSubsamples / 2, kSubsamples / 2, 1},
+        {kSubsamples / 2, kSubsamples / 2, 1},
+        {kSubsamples / 2, kSubsamples / 2, 1}}},
+      {{{kSubsamples, kSubsamples, 1},
+        {kSubsamples + 100, kSubsamples, 1},
+        {kSubsamples, kSubsamples + 100, 1}}},  // between the middles of pixels
   };
   FragmentLists lists(4, 4);
   for (const Corners& v : nowhere) {

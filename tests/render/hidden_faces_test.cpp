@@ -10,13 +10,8 @@
 namespace fovea {
 namespace {
 
-TriMesh scaled(TriMesh mesh, float scale) {
-  for (Vec3f& p : mesh.positions) p = p * scale;
-  return mesh;
-}
-
 /// A ball of radius 1 and one of radius 0.5 inside it.
-Model ball_in_ball() { return test::model_of({test::icosphere(2), scaled(test::icosphere(2), 0.5f)}); }
+Model ball_in_ball() { return test::model_of({test::icosphere(2), test::scaled(test::icosphere(2), 0.5f)}); }
 
 Model with_material(Model model, const Material& material) {
   for (Mesh& mesh : model.meshes) {
@@ -75,7 +70,7 @@ TEST(HiddenFaces, AStripThatShowsSavesALargeFace) {
   //
   //      ________slab________
   //   ___________floor___________
-  TriMesh floor = scaled(test::grid(1, 1), 10), slab = scaled(test::grid(1, 1), 9.6f);
+  TriMesh floor = test::scaled(test::grid(1, 1), 10), slab = test::scaled(test::grid(1, 1), 9.6f);
   for (Vec3f& p : slab.positions) p = p + Vec3f{0.2f, 0.2f, 0.01f};
   const auto found = hidden(test::model_of({floor, slab}));
   EXPECT_TRUE(found[0].empty()) << "samples lie closer than the border is wide";

@@ -11,7 +11,6 @@
 namespace fovea {
 namespace {
 
-constexpr std::int32_t kOne = kSubsamples;
 using Corners = std::array<ScreenVertex, 3>;
 
 /// Nearness of a triangle in samples of the grid.
@@ -32,11 +31,12 @@ bool contains(const SampleRect& rect, std::pair<int, int> sample) {
 }
 
 /// Corners are on and off the picture, on whole and half samples too.
-Corners random_triangle(Random& random, int size) {
-  const std::int32_t step = random.below(2) == 0 ? 1 : kOne / 2;
+Corners any_triangle(Random& random, int size) {
+  const std::int32_t step = random.below(2) == 0 ? 1 : kSubsamples / 2;
   const auto place = [&] {
-    const auto at = static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(3 * size * kOne)));
-    return (at - size * kOne) / step * step;
+    const auto at =
+        static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(3 * size * kSubsamples)));
+    return (at - size * kSubsamples) / step * step;
   };
   Corners v;
   for (ScreenVertex& c : v) c = {place(), place(), static_cast<float>(random.uniform(1, 2))};
@@ -47,7 +47,7 @@ TEST(ScanConvert, APartOfThePictureHasTheSamplesThatTheWholeHasThere) {
   constexpr int kSize = 40;
   Random random(51);
   for (int i = 0; i < 500; ++i) {
-    const Corners v = random_triangle(random, kSize);
+    const Corners v = any_triangle(random, kSize);
     const auto whole = drawn(v, {0, 0, kSize, kSize});
     // Narrow parts are tried sample by sample, wide ones are cut by the edges.
     const auto below = [&](int n) { return static_cast<int>(random.below(static_cast<std::uint32_t>(n))); };
@@ -67,7 +67,7 @@ TEST(ScanConvert, APartOfThePictureHasTheSamplesThatTheWholeHasThere) {
 TEST(ScanConvert, NearnessIsNeverBeyondThatOfTheCorners) {
   Random random(52);
   for (int i = 0; i < 500; ++i) {
-    const Corners v = random_triangle(random, 40);
+    const Corners v = any_triangle(random, 40);
     const auto [low, high] = std::minmax({v[0].nearness, v[1].nearness, v[2].nearness});
     for (const auto& [sample, nearness] : drawn(v, {0, 0, 40, 40})) {
       EXPECT_GE(nearness, low);
@@ -79,7 +79,7 @@ TEST(ScanConvert, NearnessIsNeverBeyondThatOfTheCorners) {
 TEST(ScanConvert, TheWindingDoesNotMatter) {
   Random random(53);
   for (int i = 0; i < 200; ++i) {
-    const Corners v = random_triangle(random, 20);
+    const Corners v = any_triangle(random, 20);
     EXPECT_EQ(drawn(v, {0, 0, 20, 20}), drawn({v[0], v[2], v[1]}, {0, 0, 20, 20}));
   }
 }

@@ -11,8 +11,6 @@
 namespace fovea {
 namespace {
 
-constexpr std::int32_t kOne = 1 << kSubsampleBits;
-
 ScreenTriangle triangle(std::array<std::array<std::int32_t, 2>, 3> corners, std::uint32_t id = 0,
                         std::array<float, 3> nearness = {1, 1, 1}) {
   ScreenTriangle t;
@@ -22,8 +20,8 @@ ScreenTriangle triangle(std::array<std::array<std::int32_t, 2>, 3> corners, std:
 }
 
 std::array<std::int32_t, 2> random_corner(Random& random, int size) {
-  return {static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(size * kOne))),
-          static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(size * kOne)))};
+  return {static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(size * kSubsamples))),
+          static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(size * kSubsamples)))};
 }
 
 /// The samples of a triangle in the first tile, drawn onto nothing.
@@ -57,7 +55,7 @@ TEST(Tile, CoversWhatLiesInside) {
   for (const int size : {3, 9, 40}) {
     for (int i = 0; i < 200; ++i) {
       // Corners on whole and half samples too, so that edges run through samples.
-      const std::int32_t step = i % 2 == 0 ? 1 : kOne / 2;
+      const std::int32_t step = i % 2 == 0 ? 1 : kSubsamples / 2;
       std::array<std::array<std::int32_t, 2>, 3> corners;
       for (auto& c : corners) {
         c = random_corner(random, size);
@@ -68,7 +66,8 @@ TEST(Tile, CoversWhatLiesInside) {
       const auto counts = covered(grid, {t});
       for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
-          const bool inside = is_inside(t, x * kOne + kOne / 2, y * kOne + kOne / 2);
+          const bool inside =
+              is_inside(t, x * kSubsamples + kSubsamples / 2, y * kSubsamples + kSubsamples / 2);
           EXPECT_EQ(counts.count(static_cast<std::uint32_t>(y * SampleGrid::kTileSamples + x)), inside);
         }
       }
@@ -84,10 +83,12 @@ TEST(Tile, CoversWhatLiesInside) {
 TEST(Tile, NeighboursCoverEachSampleOnce) {
   Random random(6);
   for (int i = 0; i < 100; ++i) {
-    constexpr std::int32_t kEnd = 32 * kOne;
+    constexpr std::int32_t kEnd = 32 * kSubsamples;
     const std::array<std::int32_t, 2> a{0, 0}, b{kEnd, 0}, c{kEnd, kEnd}, d{0, kEnd};
     std::array<std::int32_t, 2> m = random_corner(random, 32);
-    if (i % 2 == 0) m = {m[0] / kOne * kOne + kOne / 2, m[1] / kOne * kOne + kOne / 2};
+    if (i % 2 == 0)
+      m = {m[0] / kSubsamples * kSubsamples + kSubsamples / 2,
+           m[1] / kSubsamples * kSubsamples + kSubsamples / 2};
     const auto counts = covered(
         {32, 32, 1}, {triangle({a, b, m}), triangle({b, c, m}), triangle({c, d, m}), triangle({d, a, m})});
     EXPECT_EQ(counts.size(), 32u * 32u);
@@ -97,8 +98,9 @@ TEST(Tile, NeighboursCoverEachSampleOnce) {
 
 TEST(Tile, TilesShareATriangleWithoutGapOrOverlap) {
   const SampleGrid grid{300, 200, 1};
-  const ScreenTriangle t =
-      triangle({{{-500 * kOne, 100 * kOne}, {900 * kOne, -300 * kOne}, {250 * kOne + 77, 700 * kOne}}});
+  const ScreenTriangle t = triangle({{{-500 * kSubsamples, 100 * kSubsamples},
+                                      {900 * kSubsamples, -300 * kSubsamples},
+                                      {250 * kSubsamples + 77, 700 * kSubsamples}}});
   for (int row = 0; row < grid.rows(); ++row) {
     for (int column = 0; column < grid.columns(); ++column) {
       const auto tile = std::make_unique<TileSamples>(grid, column, row);
@@ -107,8 +109,8 @@ TEST(Tile, TilesShareATriangleWithoutGapOrOverlap) {
       std::size_t inside = 0;
       for (int y = 0; y < tile->height(); ++y) {
         for (int x = 0; x < tile->width(); ++x) {
-          inside += is_inside(t, (column * 128 + x) * std::int64_t{kOne} + kOne / 2,
-                              (row * 128 + y) * std::int64_t{kOne} + kOne / 2);
+          inside += is_inside(t, (column * 128 + x) * std::int64_t{kSubsamples} + kSubsamples / 2,
+                              (row * 128 + y) * std::int64_t{kSubsamples} + kSubsamples / 2);
         }
       }
       EXPECT_EQ(samples.size(), inside);
@@ -119,9 +121,9 @@ TEST(Tile, TilesShareATriangleWithoutGapOrOverlap) {
 TEST(Tile, TheNearerOfCrossingTrianglesIsSeen) {
   const SampleGrid grid{16, 16, 1};
   const auto tile = std::make_unique<TileSamples>(grid, 0, 0);
-  constexpr std::int32_t kFar = 64 * kOne;
+  constexpr std::int32_t kFar = 64 * kSubsamples;
   // The nearness of the first is x, that of the second 8 everywhere.
-  tile->draw(triangle({{{0, -kFar}, {48 * kOne, -kFar}, {0, 2 * kFar}}}, 1, {0, 48, 0}));
+  tile->draw(triangle({{{0, -kFar}, {48 * kSubsamples, -kFar}, {0, 2 * kFar}}}, 1, {0, 48, 0}));
   tile->draw(triangle({{{-kFar, -kFar}, {3 * kFar, -kFar}, {-kFar, 3 * kFar}}}, 2, {8, 8, 8}));
   for (int x = 0; x < 16; ++x) {
     EXPECT_EQ(tile->triangle(x, 3), x < 8 ? 2u : 1u) << x;
@@ -132,7 +134,7 @@ TEST(Tile, TheNearerOfCrossingTrianglesIsSeen) {
 TEST(Tile, OfEquallyNearTheFirstStays) {
   const auto tile = std::make_unique<TileSamples>(SampleGrid{4, 4, 1}, 0, 0);
   const std::array<std::array<std::int32_t, 2>, 3> all{
-      {{-kOne * 9, -kOne * 9}, {kOne * 40, 0}, {0, kOne * 40}}};
+      {{-kSubsamples * 9, -kSubsamples * 9}, {kSubsamples * 40, 0}, {0, kSubsamples * 40}}};
   tile->draw(triangle(all, 7));
   tile->draw(triangle(all, 8));
   EXPECT_EQ(tile->triangle(1, 1), 7u);

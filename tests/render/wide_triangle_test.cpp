@@ -11,29 +11,28 @@
 namespace fovea {
 namespace {
 
-constexpr std::int32_t kOne = kSubsamples;
-constexpr int kSize = 61;  // the last column is not full
-constexpr SampleRect kRect{0, 0, kSize, kSize};
+constexpr int kSide = 61;  // the last column is not full
+constexpr SampleRect kRect{0, 0, kSide, kSide};
 using Corners = std::array<ScreenVertex, 3>;
-using Samples = std::set<std::pair<int, int>>;
+using PixelSet = std::set<std::pair<int, int>>;
 
 /// Small ones and such that are mostly off the picture; some have upright or level edges.
 Corners random_triangle(Random& random) {
-  const auto size = static_cast<int>(1 + random.below(3 * kSize));
-  const std::int32_t steps[] = {1, kOne / 2, 8 * kOne}, step = steps[random.below(3)];
-  const auto middle = [&] { return static_cast<int>(random.below(2 * kSize)) - kSize / 2; };
-  const std::int32_t x = middle() * kOne, y = middle() * kOne;
+  const auto size = static_cast<int>(1 + random.below(3 * kSide));
+  const std::int32_t steps[] = {1, kSubsamples / 2, 8 * kSubsamples}, step = steps[random.below(3)];
+  const auto middle = [&] { return static_cast<int>(random.below(2 * kSide)) - kSide / 2; };
+  const std::int32_t x = middle() * kSubsamples, y = middle() * kSubsamples;
   const auto near_by = [&](std::int32_t at) {
-    const auto by = static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(size * kOne)));
-    return (at + by - size * kOne / 2) / step * step;
+    const auto by = static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(size * kSubsamples)));
+    return (at + by - size * kSubsamples / 2) / step * step;
   };
   Corners v;
   for (ScreenVertex& corner : v) corner = {near_by(x), near_by(y), 1};
   return v;
 }
 
-Samples by_spans(const Corners& v) {
-  Samples samples;
+PixelSet by_spans(const Corners& v) {
+  PixelSet samples;
   for_spans(v, kRect, [&](int y, int x0, int x1, const NearnessPlane&) {
     for (int x = x0; x < x1; ++x) samples.emplace(x, y);
   });
@@ -56,8 +55,8 @@ TEST(WideTriangle, CoversTheSamplesOfItsSpans) {
     if (double_area(v) == 0) continue;
     ASSERT_TRUE(WideTriangle::fits(v));
     const WideTriangle triangle(v, kRect);
-    const Samples expected = by_spans(v);
-    Samples samples;
+    const PixelSet expected = by_spans(v);
+    PixelSet samples;
     for (int y = triangle.box.top; y < triangle.box.bottom; ++y) {
       const int left = triangle.box.left / kColumn * kColumn;
       for (int x = left; x < triangle.box.right; ++x) {
@@ -98,8 +97,8 @@ TEST(WideTriangle, RowsHaveAllSamplesAndFewMore) {
 TEST(WideTriangle, LargeOnesDoNotFit) {
   constexpr std::int32_t kFar = 1 << 28;
   EXPECT_FALSE(WideTriangle::fits({{{-kFar, 0, 1}, {kFar, 0, 1}, {0, kFar, 1}}}));
-  EXPECT_FALSE(WideTriangle::fits({{{0, 0, 1}, {1024 * kOne, 0, 1}, {0, 1, 1}}}));
-  EXPECT_TRUE(WideTriangle::fits({{{0, 0, 1}, {1023 * kOne, 0, 1}, {0, 1, 1}}}));
+  EXPECT_FALSE(WideTriangle::fits({{{0, 0, 1}, {1024 * kSubsamples, 0, 1}, {0, 1, 1}}}));
+  EXPECT_TRUE(WideTriangle::fits({{{0, 0, 1}, {1023 * kSubsamples, 0, 1}, {0, 1, 1}}}));
 }
 
 }  // namespace

@@ -53,25 +53,21 @@ TEST(MetricStage, ViewsOfTheImageGrowWithTheTarget) {
 
 // --- What it does --------------------------------------------------------------------------------------
 
-SimplifyResult run(const Model& model, const SimplifyOptions& options) {
+SimplifyResult run_stages(const Model& model, const SimplifyOptions& options) {
   Context context;
   context.threads = 2;
   return simplify(model, options, {}, context);
 }
 
-TriMesh scaled(TriMesh mesh, float scale) {
-  for (Vec3f& p : mesh.positions) p = p * scale;
-  return mesh;
-}
 /// A ball of 1280 triangles and the same at half its size inside.
-Model ball_in_ball() { return test::model_of({test::icosphere(3), scaled(test::icosphere(3), 0.5f)}); }
+Model ball_in_ball() { return test::model_of({test::icosphere(3), test::scaled(test::icosphere(3), 0.5f)}); }
 
 TEST(MetricStage, TheRecordGoesOnFromQuadricsToViews) {
   const Model model = test::model_of(test::icosphere(4));
   SimplifyOptions options;
   options.ratio = 0.1;
   options.view_size = 64;
-  const SimplifyResult result = run(model, options);
+  const SimplifyResult result = run_stages(model, options);
   EXPECT_EQ(result.metric, Metric::image);
   EXPECT_EQ(result.metric_from, 1024u);
   EXPECT_EQ(result.stop, StopReason::target);
@@ -84,7 +80,7 @@ TEST(MetricStage, TheRecordGoesOnFromQuadricsToViews) {
                      [](const CollapseStep& a, const CollapseStep& b) { return a.error_rel < b.error_rel; }));
   // The first part is that of quadrics alone.
   options.metric = Metric::quadric;
-  const SimplifyResult quadric = run(model, options);
+  const SimplifyResult quadric = run_stages(model, options);
   std::size_t same = 0;
   while (same < quadric.record.steps.size() &&
          quadric.record.steps[same].removed == result.record.steps[same].removed)
@@ -97,7 +93,7 @@ TEST(MetricStage, ByVisibilityWhatNoViewSeesGoesFirst) {
   SimplifyOptions options;
   options.metric = Metric::visibility;
   options.ratio = 0.6;
-  const SimplifyResult result = run(ball_in_ball(), options);
+  const SimplifyResult result = run_stages(ball_in_ball(), options);
   EXPECT_EQ(result.metric, Metric::visibility);
   EXPECT_GE(result.model.meshes[0].surface.face_count(), 1200u) << "of 1280; the target is 1536";
 }
@@ -108,7 +104,7 @@ TEST(MetricStage, HiddenTrianglesAreDroppedFirstAndTheRecordSaysSo) {
   options.metric = Metric::quadric;
   options.ratio = 0.3;
   options.cull_hidden = true;
-  const SimplifyResult result = run(model, options);
+  const SimplifyResult result = run_stages(model, options);
   EXPECT_EQ(result.triangles_hidden, 1280u);
   EXPECT_EQ(result.model.meshes[1].surface.face_count(), 0u);
   EXPECT_LE(result.triangles_after, 768u);
@@ -129,7 +125,7 @@ TEST(MetricStage, HiddenTrianglesAreDroppedWhateverDecides) {
     options.ratio = 0.2;
     options.view_size = 48;
     options.cull_hidden = true;
-    const SimplifyResult result = run(ball_in_ball(), options);
+    const SimplifyResult result = run_stages(ball_in_ball(), options);
     EXPECT_EQ(result.triangles_hidden, 1280u);
     EXPECT_EQ(result.stop, StopReason::target) << to_string(metric);
   }
@@ -148,7 +144,7 @@ TEST(MetricStage, AModelOfWhichNothingIsSeenIsRefused) {
   options.ratio = 0.5;
   options.cull_hidden = true;
   options.views.set = ViewSet::cameras;
-  EXPECT_THROW(run(model, options), Error);
+  EXPECT_THROW(run_stages(model, options), Error);
 }
 
 }  // namespace

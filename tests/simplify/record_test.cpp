@@ -17,7 +17,7 @@
 namespace fovea {
 namespace {
 
-SimplifyResult run(const Model& model, std::int64_t triangles) {
+SimplifyResult simplify_to(const Model& model, std::int64_t triangles) {
   SimplifyOptions options = test::by_quadrics();
   options.triangles = triangles;
   Context context;
@@ -53,7 +53,7 @@ TEST(Record, AnyLevelIsWhatSimplifyingToItGives) {
     if (mesh.face_count() < 16) continue;
     const Model model = test::model_of(mesh);
     const auto faces = static_cast<std::int64_t>(mesh.face_count());
-    const SimplifyResult deep = run(model, faces / 8), half = run(model, faces / 2);
+    const SimplifyResult deep = simplify_to(model, faces / 8), half = simplify_to(model, faces / 2);
     ASSERT_LE(half.record.steps.size(), deep.record.steps.size()) << name;
     const TriMesh* source = &mesh;
     const auto level = replay(std::span(&source, 1), deep.record, half.record.steps.size());
@@ -63,7 +63,7 @@ TEST(Record, AnyLevelIsWhatSimplifyingToItGives) {
 
 TEST(Record, CountsTrianglesAtEveryStep) {
   const TriMesh mesh = test::torus(24, 12);
-  const SimplifyResult result = run(test::model_of(mesh), 40);
+  const SimplifyResult result = simplify_to(test::model_of(mesh), 40);
   const TriMesh* source = &mesh;
   for (std::size_t n = 0; n <= result.record.steps.size(); n += 7) {
     const auto level = replay(std::span(&source, 1), result.record, n);
@@ -73,7 +73,7 @@ TEST(Record, CountsTrianglesAtEveryStep) {
 }
 
 TEST(Record, ErrorNeverFalls) {
-  const SimplifyResult result = run(test::model_of(test::icosphere(4)), 50);
+  const SimplifyResult result = simplify_to(test::model_of(test::icosphere(4)), 50);
   float last = 0;
   for (const CollapseStep& step : result.record.steps) {
     EXPECT_GE(step.error_rel, last);
@@ -83,7 +83,7 @@ TEST(Record, ErrorNeverFalls) {
 
 TEST(Record, SourceVerticesFollowTheCollapses) {
   const TriMesh mesh = test::wavy_grid(12, 12, 0.1);
-  const SimplifyResult result = run(test::model_of(mesh), 40);
+  const SimplifyResult result = simplify_to(test::model_of(mesh), 40);
   const TriMesh& level = result.model.meshes[0].surface;
   ASSERT_EQ(level.source_vertex.size(), mesh.source_vertex.size());
   for (std::size_t i = 0; i < mesh.source_vertex.size(); ++i) {
@@ -119,7 +119,7 @@ TEST(Record, NoCollapseTearsTheSurface) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     test::Choices choices(seed);
     const Model model = test::any_model(choices);
-    const CollapseRecord record = run(model, 0).record;
+    const CollapseRecord record = simplify_to(model, 0).record;
     std::vector<std::vector<std::uint32_t>> now;
     for (const Mesh& mesh : model.meshes) {
       now.emplace_back(mesh.surface.vertex_count());

@@ -75,7 +75,7 @@ Model sample(const std::string& name) {
   return make_sample(name, 0.02, context);
 }
 
-constexpr Metric kMetrics[] = {Metric::image, Metric::entropy, Metric::polygon_entropy};
+constexpr Metric kPixelMetrics[] = {Metric::image, Metric::entropy, Metric::polygon_entropy};
 constexpr const char* kSamples[] = {"vase", "arm", "spheres", "terrain"};
 
 void expect_same_lists(const ViewCost& ours, const ViewCost& fresh) {
@@ -89,7 +89,7 @@ void expect_same_lists(const ViewCost& ours, const ViewCost& fresh) {
 TEST(ViewCost, ListsStayThoseOfAFreshDrawing) {
   for (const char* name : kSamples) {
     const Model model = sample(name);
-    for (const Metric metric : kMetrics) {
+    for (const Metric metric : kPixelMetrics) {
       if (metric != Metric::image && std::string(name) != "vase") continue;  // the lists are the same
       Trial trial(model, options_for(metric));
       const std::uint64_t start = trial.state.mesh.live_faces;
@@ -162,7 +162,7 @@ std::vector<VertexField> all_locked_but_one(const Model& model, std::uint64_t se
 }
 
 TEST(ViewCost, SaysWhatTwoDrawingsDifferBy) {
-  for (const Metric metric : kMetrics) {
+  for (const Metric metric : kPixelMetrics) {
     double changes = 0;
     int most_pieces = 0;
     for (const char* name : {"vase", "arm"}) {

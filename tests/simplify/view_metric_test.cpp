@@ -12,10 +12,10 @@
 namespace fovea {
 namespace {
 
-constexpr Metric kMetrics[] = {Metric::image, Metric::entropy, Metric::polygon_entropy};
+constexpr Metric kViewMetrics[] = {Metric::image, Metric::entropy, Metric::polygon_entropy};
 
-SimplifyResult run(const Model& model, const SimplifyOptions& options, const Importance& importance = {},
-                   int threads = 2) {
+SimplifyResult run_by(const Model& model, const SimplifyOptions& options, const Importance& importance = {},
+                      int threads = 2) {
   Context context;
   context.threads = threads;
   SimplifyResult result = simplify(model, options, importance, context);
@@ -41,12 +41,12 @@ Model sample(const std::string& name, double detail) {
 TEST(ViewMetric, EveryMetricReachesItsTargetInItsOwnWay) {
   const Model vase = sample("vase", 0.02);
   std::vector<std::vector<Vec3f>> found{
-      run(vase, by(Metric::quadric, 0.3)).model.meshes[0].surface.positions};
-  for (const Metric metric : kMetrics) {
+      run_by(vase, by(Metric::quadric, 0.3)).model.meshes[0].surface.positions};
+  for (const Metric metric : kViewMetrics) {
     for (const Placement placement : {Placement::optimal, Placement::half_edge}) {
       SimplifyOptions options = by(metric, 0.3);
       options.placement = placement;
-      const SimplifyResult result = run(vase, options);
+      const SimplifyResult result = run_by(vase, options);
       EXPECT_EQ(result.stop, StopReason::target);
       EXPECT_LE(result.triangles_after, result.triangles_target);
       EXPECT_GT(result.error_rel, 0);
@@ -58,23 +58,17 @@ TEST(ViewMetric, EveryMetricReachesItsTargetInItsOwnWay) {
 
 TEST(ViewMetric, IsTheSameForAnyNumberOfThreads) {
   const Model arm = sample("arm", 0.02);
-  for (const Metric metric : kMetrics) {
-    const SimplifyResult one = run(arm, by(metric, 0.3), {}, 1), two = run(arm, by(metric, 0.3), {}, 2);
+  for (const Metric metric : kViewMetrics) {
+    const SimplifyResult one = run_by(arm, by(metric, 0.3), {}, 1), two = run_by(arm, by(metric, 0.3), {}, 2);
     EXPECT_EQ(one.model.meshes[0].surface.positions, two.model.meshes[0].surface.positions);
     EXPECT_EQ(one.model.meshes[0].surface.triangles, two.model.meshes[0].surface.triangles);
   }
 }
 
-/// Two balls of 1280 triangles, radius 1 and 0.5, the smaller one inside.
-Model ball_in_ball() {
-  TriMesh inner = test::icosphere(3);
-  for (Vec3f& p : inner.positions) p = p * 0.5f;
-  return test::model_of({test::icosphere(3), inner});
-}
-
 TEST(ViewMetric, WhatNoViewSeesGoesFirst) {
   const auto share_outside = [](Metric metric) {
-    const SimplifyResult result = run(ball_in_ball(), by(metric, 0.55));
+    const SimplifyResult result = run_by(
+        test::model_of({test::icosphere(3), test::scaled(test::icosphere(3), 0.5f)}), by(metric, 0.55));
     return static_cast<double>(result.model.meshes[0].surface.face_count()) /
            static_cast<double>(result.triangles_after);
   };
@@ -99,8 +93,8 @@ TEST(ViewMetric, ImportanceMultipliesWhatIsLost) {
       return x > 0.5f;
     });
   };
-  const auto with = in_right_half(run(model, by(Metric::image, 0.3), {field}).model.meshes[0].surface);
-  const auto without = in_right_half(run(model, by(Metric::image, 0.3)).model.meshes[0].surface);
+  const auto with = in_right_half(run_by(model, by(Metric::image, 0.3), {field}).model.meshes[0].surface);
+  const auto without = in_right_half(run_by(model, by(Metric::image, 0.3)).model.meshes[0].surface);
   EXPECT_GT(with, without + without / 4);
 }
 
@@ -109,7 +103,7 @@ TEST(ViewMetric, PicturesAreNearerThanByQuadrics) {
   SimplifyOptions options = by(Metric::image, 0.1);
   options.views.set = ViewSet::dodecahedron;
   options.view_size = 128;
-  const SimplifyResult ours = run(vase, options), quadric = run(vase, by(Metric::quadric, 0.1));
+  const SimplifyResult ours = run_by(vase, options), quadric = run_by(vase, by(Metric::quadric, 0.1));
   CompareOptions judge;
   judge.size = 128;
   judge.distance_samples = 0;
@@ -127,19 +121,19 @@ TEST(ViewMetric, AModelThatNothingShowsIsSimplifiedByQuadrics) {
   model.nodes.clear();
   model.scenes.clear();
   model.default_scene = -1;
-  EXPECT_EQ(run(model, by(Metric::image, 0.5)).stop, StopReason::target);
+  EXPECT_EQ(run_by(model, by(Metric::image, 0.5)).stop, StopReason::target);
 }
 
 TEST(ViewMetric, RefusesViewsThatCannotBe) {
   const Model model = test::model_of(test::icosphere(1));
   SimplifyOptions cameras = by(Metric::image, 0.5);
   cameras.views.set = ViewSet::cameras;
-  EXPECT_THROW(run(model, cameras), Error);
+  EXPECT_THROW(run_by(model, cameras), Error);
   SimplifyOptions many = by(Metric::image, 0.5);
   many.views.set = ViewSet::fibonacci;
   many.views.count = 4096;
   many.view_size = 2048;
-  EXPECT_THROW(run(model, many), Error);
+  EXPECT_THROW(run_by(model, many), Error);
 }
 
 }  // namespace

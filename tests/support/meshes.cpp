@@ -547,4 +547,9 @@ TriMesh shuffled(const TriMesh& mesh) {
   return result;
 }
 
+TriMesh scaled(TriMesh mesh, float scale) {
+  for (Vec3f& p : mesh.positions) p = p * scale;
+  return mesh;
+}
+
 }  // namespace fovea::test

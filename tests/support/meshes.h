@@ -90,6 +90,8 @@ std::vector<NamedMesh> all_families();
 
 /// The same mesh with vertices, triangles and values in random order, as scans and exports have them.
 TriMesh shuffled(const TriMesh& mesh);
+/// About the origin.
+TriMesh scaled(TriMesh mesh, float scale);
 
 /// A model that shows each mesh once, in one scene; materials as many as the parts name.
 Model model_of(std::vector<TriMesh> meshes);

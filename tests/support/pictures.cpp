@@ -36,4 +36,10 @@ Image8 distorted(const Image8& image) {
   return result;
 }
 
+Image8 even(int size, std::uint8_t value) {
+  Image8 image(size, size, 3, ColorEncoding::srgb);
+  std::ranges::fill(image.pixels, value);
+  return image;
+}
+
 }  // namespace fovea::test

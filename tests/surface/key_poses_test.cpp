@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "fovea/io/read.h"
@@ -19,8 +20,6 @@ namespace fovea {
 namespace {
 
 using ::testing::ElementsAre;
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::vector<KeyPose> poses_of(const Model& model, std::int64_t count = 8, int threads = 1) {
   Context context;
@@ -51,7 +50,7 @@ Animation animation_of(int node, const std::string& path, const std::vector<floa
 Animation turning(int node, const std::vector<float>& times, const std::vector<double>& angles_deg) {
   std::vector<float> rotations;
   for (const double angle : angles_deg) {
-    const double half = angle * kPi / 360;
+    const double half = angle * std::numbers::pi / 360;
     rotations.insert(rotations.end(),
                      {0, 0, static_cast<float>(std::sin(half)), static_cast<float>(std::cos(half))});
   }

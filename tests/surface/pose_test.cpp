@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "fovea/base/error.h"
 #include "support/meshes.h"
 
 namespace fovea {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A square in one node that an animation moves.
 Model moved(const std::string& path, std::vector<float> times, std::vector<float> values, int width,
@@ -60,7 +59,7 @@ TEST(Pose, RotationsTakeTheShortWayAtEvenSpeed) {
   const Model model = moved("rotation", {0, 1}, {0, 0, 0, 1, 0, 0, -h, -h}, 4, Interpolation::linear);
   for (const double t : {0.0, 0.25, 0.5, 1.0}) {
     const Mat4 world = pose_at(model, 0, t).node_world[0];
-    EXPECT_NEAR(std::atan2(world(1, 0), world(0, 0)), t * kPi / 2, 1e-6);
+    EXPECT_NEAR(std::atan2(world(1, 0), world(0, 0)), t * std::numbers::pi / 2, 1e-6);
   }
 }
 

@@ -34,7 +34,7 @@ double value_at(const Response& response, double eigenvalue) {
   return sum;
 }
 
-VertexField noise(std::size_t count) {
+VertexField white_noise(std::size_t count) {
   Random random(5);
   VertexField field(count);
   for (float& x : field.values()) x = static_cast<float>(random.uniform(-1, 1));
@@ -64,7 +64,7 @@ TEST(SpectralFilter, KeepsConstantsAndBounds) {
     const double sigma = 0.14 * diagonal(surface);
     const VertexField even = spread(surface, VertexField(count, 3.0f), sigma);
     for (const float x : even.values()) EXPECT_NEAR(x, 3, 1e-4) << named.name;
-    const VertexField before = noise(count), after = spread(surface, before, sigma);
+    const VertexField before = white_noise(count), after = spread(surface, before, sigma);
     for (const float x : after.values()) EXPECT_LE(std::abs(x), 1 + 1e-4) << named.name;
   }
 }
@@ -87,7 +87,7 @@ TEST(SpectralFilter, ResponsesShareTerms) {
   Context context;
   const Adjacency adjacency(surface, context);
   const SpectralFilter filter(surface, adjacency, context);
-  const VertexField field = noise(surface.positions.size());
+  const VertexField field = white_noise(surface.positions.size());
   const double sigmas[] = {0.09, 0.045, 0.2};
   const Response responses[] = {wide(sigmas[0]), wide(sigmas[1]), wide(sigmas[2])};
   const auto all = filter.run({&field, 1}, responses, context)[0];
@@ -152,7 +152,7 @@ TEST(SpectralFilter, FieldsTogetherAreAsEachAlone) {
   const SpectralFilter filter(surface, Adjacency(surface, context), context);
   std::vector<VertexField> fields;
   for (int i = 0; i < 6; ++i) {
-    fields.push_back(noise(surface.positions.size()));
+    fields.push_back(white_noise(surface.positions.size()));
     for (float& x : fields.back().values()) x = x * static_cast<float>(i + 1) + 1;
   }
   const Response responses[] = {wide(0.045), gaussian_response(0.1, 2)};

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNoLoss = std::numeric_limits<double>::infinity();
 
-Image8 even(int width, int height) {
+Image8 two_toned(int width, int height) {
   Image8 image(width, height, 3, ColorEncoding::srgb);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = i % 3 == 0 ? 200 : 30;
   return image;
@@ -63,9 +63,9 @@ TEST(EncodeToPsnr, WhatNoQualityReachesIsStoredWithoutLoss) {
 }
 
 TEST(EncodeToPsnr, EvenColorsAreSmallerWithoutLoss) {
-  const EncodedTexture found = encode_to_psnr(even(800, 600), TextureFormat::webp, 40, Content::data);
+  const EncodedTexture found = encode_to_psnr(two_toned(800, 600), TextureFormat::webp, 40, Content::data);
   EXPECT_EQ(found.quality, 0);
-  EXPECT_EQ(decode_image(found.bytes).pixels, even(800, 600).pixels);
+  EXPECT_EQ(decode_image(found.bytes).pixels, two_toned(800, 600).pixels);
 }
 
 TEST(EncodeToPsnr, AlphaAndGreyComeThrough) {
@@ -132,7 +132,7 @@ TEST(EncodeToPsnr, LargeImagesWithLittleInThemAreFoundToBeNearEnough) {
 
 TEST(EncodeToPsnr, OneTexel) {
   for (const TextureFormat format : {TextureFormat::png, TextureFormat::jpeg, TextureFormat::webp})
-    EXPECT_FALSE(encode_to_psnr(even(1, 1), format, 40, Content::data).bytes.empty());
+    EXPECT_FALSE(encode_to_psnr(two_toned(1, 1), format, 40, Content::data).bytes.empty());
 }
 
 TEST(EncodingPsnr, LooksAtWhatCounts) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "support/meshes.h"
+#include "support/pictures.h"
 #include "support/textured.h"
 
 namespace fovea {
@@ -15,15 +16,9 @@ namespace {
 using ::testing::Each;
 using ::testing::SizeIs;
 
-Image8 even(int size, std::uint8_t value) {
-  Image8 image(size, size, 3, ColorEncoding::srgb);
-  std::ranges::fill(image.pixels, value);
-  return image;
-}
-
 /// Every other row white, else black.
 Image8 stripes(int size) {
-  Image8 image = even(size, 0);
+  Image8 image = test::even(size, 0);
   for (int y = 0; y < size; y += 2)
     for (int x = 0; x < size; ++x) std::fill_n(image.at(x, y), 3, std::uint8_t{255});
   return image;
@@ -39,16 +34,16 @@ ImageSights sights_of(const Model& model, std::vector<double> pixels,
 TEST(ImageLoss, IsTheSquaredDifferenceOfWhatIsShown) {
   const Model model = test::textured(test::grid(3, 3), 1);
   const ImageSights sights = sights_of(model, {64, 512});
-  const ImageLoss loss(sights, even(16, 100), colors(), {});
-  EXPECT_THAT(loss.of(even(16, 100), {}), testing::ElementsAre(0, 0));
-  EXPECT_THAT(loss.of(even(4, 110), {}), Each(testing::DoubleNear(3 * std::pow(10.0 / 255, 2), 1e-6)));
+  const ImageLoss loss(sights, test::even(16, 100), colors(), {});
+  EXPECT_THAT(loss.of(test::even(16, 100), {}), testing::ElementsAre(0, 0));
+  EXPECT_THAT(loss.of(test::even(4, 110), {}), Each(testing::DoubleNear(3 * std::pow(10.0 / 255, 2), 1e-6)));
 }
 
 TEST(ImageLoss, PicturesThatAreSmallSeeNoFineDetail) {
   // Light of half the rows: a grey of 188 where they are too small to be seen.
   const Model model = test::textured(test::grid(3, 3), 1);
   const ImageSights sights = sights_of(model, {16, 2048});
-  const std::vector<double> lost = ImageLoss(sights, stripes(256), colors(), {}).of(even(256, 188), {});
+  const std::vector<double> lost = ImageLoss(sights, stripes(256), colors(), {}).of(test::even(256, 188), {});
   EXPECT_LT(lost[0], 0.001);
   EXPECT_GT(lost[1], 0.1);  // looks between rows see mixtures of them
 }
@@ -61,10 +56,10 @@ TEST(ImageLoss, CountsWhereThereAreLooks) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     field[VertexId(static_cast<std::uint32_t>(v))] = mesh.positions[v].y > 0.6f ? 1.0f : 0.0f;
   const ImageSights sights = sights_of(model, {64}, {field}), all = sights_of(model, {64});
-  Image8 upper = even(64, 50);
+  Image8 upper = test::even(64, 50);
   std::fill_n(upper.at(0, 0), 64 * 16 * 3, std::uint8_t{200});
   const auto lost = [&](const ImageSights& seen) {
-    return ImageLoss(seen, even(64, 50), colors(), {}).of(upper, {})[0];
+    return ImageLoss(seen, test::even(64, 50), colors(), {}).of(upper, {})[0];
   };
   EXPECT_GT(lost(all), 0);
   EXPECT_LT(lost(sights), lost(all) / 10);
@@ -74,9 +69,9 @@ TEST(ImageLoss, ImagesThatNoTriangleShowsAreSeenAsAWhole) {
   const Model model = test::textured(test::grid(2, 2), 1);
   const ImageSights sights(model, {}, {}, {256});
   EXPECT_THAT(sights.all(), SizeIs(8100));
-  Image8 corner = even(64, 0);
+  Image8 corner = test::even(64, 0);
   std::fill_n(corner.at(63, 63), 3, std::uint8_t{255});
-  EXPECT_GT(ImageLoss(sights, even(64, 0), colors(), {}).of(corner, {})[0], 0);
+  EXPECT_GT(ImageLoss(sights, test::even(64, 0), colors(), {}).of(corner, {})[0], 0);
 }
 
 TEST(ImageLoss, IsTheSameForAnyNumberOfThreads) {
@@ -85,8 +80,8 @@ TEST(ImageLoss, IsTheSameForAnyNumberOfThreads) {
   Context one, four;
   one.threads = 1;
   four.threads = 4;
-  EXPECT_EQ(ImageLoss(sights, stripes(64), colors(), one).of(even(64, 80), one),
-            ImageLoss(sights, stripes(64), colors(), four).of(even(64, 80), four));
+  EXPECT_EQ(ImageLoss(sights, stripes(64), colors(), one).of(test::even(64, 80), one),
+            ImageLoss(sights, stripes(64), colors(), four).of(test::even(64, 80), four));
 }
 
 }  // namespace

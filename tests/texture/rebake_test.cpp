@@ -22,7 +22,7 @@ constexpr double kAmplitude = 0.04;
 struct Squares {
   Model original, simplified;
 };
-Squares squares(int images) {
+Squares flat_and_wavy(int images) {
   Squares s{test::textured(test::wavy_grid(48, 48, kAmplitude), images),
             test::textured(test::wavy_grid(1, 1, kAmplitude), images)};
   TriMesh& flat = s.simplified.meshes[0].surface;
@@ -40,7 +40,7 @@ ShrinkOptions rebake_of(const Model& original, bool normals = false) {
   return options;
 }
 
-Shrunk shrink(const Model& model, const ShrinkOptions& options, int threads = 1) {
+Shrunk rebaked(const Model& model, const ShrinkOptions& options, int threads = 1) {
   Context context;
   context.threads = threads;
   return shrink_textures(model, options, {}, context);
@@ -54,12 +54,12 @@ Vec3d normal_at(double x, double y) {
 }
 
 TEST(Rebake, OneImageThatCannotBeReadLosesNoOther) {
-  Squares s = squares(2);
+  Squares s = flat_and_wavy(2);
   for (Model* model : {&s.original, &s.simplified})
     model->images[1].bytes.resize(model->images[1].bytes.size() / 2);
   ShrinkOptions options = rebake_of(s.original);
   options.output.format = TextureOutput::webp;
-  const Shrunk found = shrink(s.simplified, options);
+  const Shrunk found = rebaked(s.simplified, options);
   EXPECT_EQ(found.images[0].after.mime_type, "image/webp");
   EXPECT_NE(found.model.images[0].bytes, s.simplified.images[0].bytes);
   EXPECT_EQ(found.model.images[1], s.simplified.images[1]);
@@ -68,17 +68,17 @@ TEST(Rebake, OneImageThatCannotBeReadLosesNoOther) {
 }
 
 TEST(Rebake, FilesDoNotGrowAndWhatShowsNoMoreStays) {
-  const Squares s = squares(1);
-  const Shrunk same = shrink(s.original, rebake_of(s.original));
+  const Squares s = flat_and_wavy(1);
+  const Shrunk same = rebaked(s.original, rebake_of(s.original));
   EXPECT_EQ(same.model.images, s.original.images);
   EXPECT_NE(same.images[0].kept_because, "");
-  const Shrunk baked = shrink(s.simplified, rebake_of(s.original));
+  const Shrunk baked = rebaked(s.simplified, rebake_of(s.original));
   EXPECT_LE(baked.model.images[0].bytes.size(), s.simplified.images[0].bytes.size());
 }
 
 TEST(Rebake, NormalsBecomeAMapWhereThereIsNone) {
-  const Squares s = squares(1);
-  const Shrunk found = shrink(s.simplified, rebake_of(s.original, true));
+  const Squares s = flat_and_wavy(1);
+  const Shrunk found = rebaked(s.simplified, rebake_of(s.original, true));
   const Model& model = found.model;
   // Elements are only added.
   ASSERT_EQ(model.images.size(), 2u);
@@ -107,7 +107,7 @@ TEST(Rebake, NormalsBecomeAMapWhereThereIsNone) {
 
 TEST(Rebake, NormalsTakeTheOldMapAlong) {
   // A map that leans along u everywhere, on a flat original: the normals of the result lean as well.
-  Squares s = squares(2);
+  Squares s = flat_and_wavy(2);
   Image8 leaning(32, 32, 3, ColorEncoding::linear);
   for (std::size_t i = 0; i < leaning.pixels.size(); i += 3)
     leaning.pixels[i] = 204, leaning.pixels[i + 1] = 128, leaning.pixels[i + 2] = 230;
@@ -134,7 +134,7 @@ TEST(Rebake, NormalsTakeTheOldMapAlong) {
 /// Two of the squares in one place and in one image, side by side there: the bumps of the second go the other
 /// way.
 Squares two_meshes() {
-  Squares s = squares(1);
+  Squares s = flat_and_wavy(1);
   for (Model* model : {&s.original, &s.simplified}) {
     Mesh second = model->meshes[0];
     for (Vec3f& p : second.surface.positions) p.z = -p.z;
@@ -173,7 +173,7 @@ TEST(Rebake, EachMeshLooksAtItsOwnSurface) {
 }
 
 TEST(Rebake, ImagesOfVariantsAreBakedToo) {
-  Squares s = squares(1);
+  Squares s = flat_and_wavy(1);
   for (Model* model : {&s.original, &s.simplified}) {
     Image8 other = decode_image(model->images[0].bytes);
     for (std::uint8_t& value : other.pixels) value = static_cast<std::uint8_t>(255 - value);
@@ -189,7 +189,7 @@ TEST(Rebake, ImagesOfVariantsAreBakedToo) {
   options.output.format = TextureOutput::png;
   options.output.psnr_db = 100;
   options.scale = 0.5;
-  const Shrunk found = shrink(s.simplified, options);
+  const Shrunk found = rebaked(s.simplified, options);
   const Image8 own = decode_image(found.model.images[0].bytes),
                other = decode_image(found.model.images[1].bytes);
   ASSERT_EQ(other.width, own.width);
@@ -203,11 +203,11 @@ TEST(Rebake, ImagesOfVariantsAreBakedToo) {
 
 TEST(Rebake, WhatIsBakedSharesTheBytes) {
   // A new normal map, which takes what detail it has, and a picture.
-  const Squares s = squares(1);
+  const Squares s = flat_and_wavy(1);
   ShrinkOptions options = rebake_of(s.original, true);
-  const Shrunk all = shrink(s.simplified, options);
+  const Shrunk all = rebaked(s.simplified, options);
   options.max_bytes = static_cast<std::int64_t>(all.bytes) / 4;
-  const Shrunk found = shrink(s.simplified, options);
+  const Shrunk found = rebaked(s.simplified, options);
   EXPECT_LE(found.bytes, all.bytes / 4);
   EXPECT_GT(found.bytes, all.bytes / 12);
   ASSERT_EQ(found.images.size(), 2u);
@@ -218,30 +218,30 @@ TEST(Rebake, WhatIsBakedSharesTheBytes) {
 }
 
 TEST(Rebake, AFileThatCannotBeSmallerStays) {
-  Squares s = squares(1);
+  Squares s = flat_and_wavy(1);
   Image8 tiny(2, 2, 3, ColorEncoding::srgb);
   tiny.at(0, 0)[0] = 200;
   for (Model* model : {&s.original, &s.simplified}) model->images[0].bytes = encode_png(tiny);
   ShrinkOptions options = rebake_of(s.original);
   options.max_bytes = 10;
-  const Shrunk found = shrink(s.simplified, options);
+  const Shrunk found = rebaked(s.simplified, options);
   EXPECT_LE(found.model.images[0].bytes.size(), s.original.images[0].bytes.size());
   EXPECT_EQ(found.bytes, found.model.images[0].bytes.size());
 }
 
 TEST(Rebake, MovesAndBakesAtOnce) {
-  const Squares s = squares(1);
+  const Squares s = flat_and_wavy(1);
   ShrinkOptions options = rebake_of(s.original);
   options.moves = TexelMoves::balanced;
   options.scale = 0.25;
   options.output.format = TextureOutput::webp;
-  const Shrunk one = shrink(s.simplified, options), three = shrink(s.simplified, options, 3);
+  const Shrunk one = rebaked(s.simplified, options), three = rebaked(s.simplified, options, 3);
   EXPECT_EQ(one.images[0].after.width, 16) << one.images[0].kept_because;
   EXPECT_GT(one.atlases.at(0).rebaked_texels, 0.5);
   EXPECT_EQ(one.model.images[0].bytes, three.model.images[0].bytes);
   options.rebake.normals = true;
-  EXPECT_EQ(shrink(s.simplified, options).model.images[1].bytes,
-            shrink(s.simplified, options, 3).model.images[1].bytes);
+  EXPECT_EQ(rebaked(s.simplified, options).model.images[1].bytes,
+            rebaked(s.simplified, options, 3).model.images[1].bytes);
 }
 
 TEST(Rebake, AnyMeshComesThrough) {
@@ -249,7 +249,7 @@ TEST(Rebake, AnyMeshComesThrough) {
     const Model model = test::textured(mesh, 1);
     ShrinkOptions options = rebake_of(model, true);
     options.scale = 0.5;
-    const Shrunk found = shrink(model, options);
+    const Shrunk found = rebaked(model, options);
     for (const Mesh& m : found.model.meshes) EXPECT_NO_THROW(check(m.surface)) << name;
     EXPECT_EQ(found.images.size(), found.model.images.size()) << name;
   }
@@ -263,7 +263,7 @@ TEST(Rebake, AnImageWhoseTrianglesAllWentStays) {
   mesh.face_part.clear();
   for (AttributeLayer& layer : mesh.layers) layer.corner_value.clear();
   for (const bool normals : {false, true}) {
-    const Shrunk found = shrink(simplified, rebake_of(original, normals));
+    const Shrunk found = rebaked(simplified, rebake_of(original, normals));
     EXPECT_EQ(found.model.images.at(0), original.images[0]);
   }
 }
@@ -271,7 +271,7 @@ TEST(Rebake, AnImageWhoseTrianglesAllWentStays) {
 TEST(Rebake, TiledImagesStayAndItIsSaid) {
   Model model = test::textured(test::grid(2, 2), 1);
   for (float& x : model.meshes[0].surface.find(Semantic::uv)->values) x *= 3;
-  const Shrunk found = shrink(model, rebake_of(model));
+  const Shrunk found = rebaked(model, rebake_of(model));
   EXPECT_EQ(found.model.images, model.images);
   EXPECT_THAT(found.atlases.at(0).not_rebaked_because, testing::HasSubstr("tiled"));
 }
@@ -280,19 +280,19 @@ TEST(Rebake, CoordinatesThatWentAstrayComeBack) {
   const Model original = test::textured(test::grid(4, 4), 1);
   Model simplified = test::textured(test::grid(1, 1), 1);
   simplified.meshes[0].surface.find(Semantic::uv)->values[0] = -0.05f;
-  const Shrunk found = shrink(simplified, rebake_of(original));
+  const Shrunk found = rebaked(simplified, rebake_of(original));
   EXPECT_EQ(found.atlases.at(0).not_rebaked_because, "");
   EXPECT_EQ(found.model.meshes[0].surface.find(Semantic::uv)->values[0], 0);
 }
 
 TEST(Rebake, AnotherModelIsRefused) {
-  const Squares s = squares(1);
+  const Squares s = flat_and_wavy(1);
   const Model other = test::textured(test::two_part_grid(2, 1), 1);
-  test::expect_error([&] { shrink(s.simplified, rebake_of(other)); }, ErrorKind::usage, "");
+  test::expect_error([&] { rebaked(s.simplified, rebake_of(other)); }, ErrorKind::usage, "");
 }
 
 TEST(Rebake, CanBeCancelled) {
-  const Squares s = squares(1);
+  const Squares s = flat_and_wavy(1);
   Context context;
   context.cancel();
   test::expect_error([&] { shrink_textures(s.simplified, rebake_of(s.original), {}, context); },

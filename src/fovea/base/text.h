@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace fovea {
 
@@ -10,5 +13,10 @@ std::string lower_case(std::string text);
 
 /// ".obj" of "Model.OBJ"; empty without one.
 std::string lower_extension(const std::filesystem::path& path);
+
+/// The bytes as characters; they stay where they are.
+inline std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 }  // namespace fovea

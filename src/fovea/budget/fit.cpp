@@ -14,6 +14,7 @@
 #include "fovea/budget/marginal.h"
 #include "fovea/model/image_error.h"
 #include "fovea/simplify/simplify.h"
+#include "fovea/texture/image_ways.h"
 
 namespace fovea {
 
@@ -328,10 +329,9 @@ class BudgetFit::Finder {
   /// The sides of all images halved alike, as somebody would who measures nothing: estimates can be wrong
   /// about which image wants large sides rather than high quality.
   void try_halves() {
-    constexpr int kMost = 5;
     const FitChoice base = best_->choice;
     const auto room = static_cast<std::uint64_t>(room_beside(base, base));
-    for (int halvings = 0; halvings <= kMost; ++halvings) {
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
       FitChoice choice = base;
       choice.ways = ladders_.textures()->halved(room, halvings);
       if (choice.ways.empty()) continue;

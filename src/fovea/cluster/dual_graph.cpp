@@ -12,7 +12,7 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kGrain = 8192;
+constexpr std::size_t kFaceGrain = 8192;
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -21,7 +21,7 @@ void measure(DualGraph& graph, const Surface& surface, const Context& context) {
   graph.centers.resize(count);
   graph.normals.resize(count);
   graph.areas.resize(count);
-  parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, count, kFaceGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const auto& t = surface.triangles[f];
       const Vec3d a = surface.position(t[0]), b = surface.position(t[1]), c = surface.position(t[2]);

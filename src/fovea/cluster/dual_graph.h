@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,6 +28,8 @@ struct DualGraph {
   std::vector<float> areas;    ///< [#F]
 
   std::size_t face_count() const { return areas.size(); }
+  /// What a triangle counts where triangles are averaged: its area, so much that degenerate ones count too.
+  static double weight(float area) { return static_cast<double>(std::max(area, 1e-12f)); }
   std::span<const Link> around(std::size_t face) const {
     return {links.data() + first_link[face], links.data() + first_link[face + 1]};
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fovea/cluster/dual_graph.h"
 #include "fovea/model/ids.h"
 
 namespace fovea {
@@ -15,13 +16,11 @@ namespace {
 /// and one or two on the body, far larger ones hide saliency. The last factor, between neighbours, shrinks
 /// with the size of triangles: its floor is what makes costs add up to about the same on a finer mesh.
 constexpr double kFloor = 0.3;
-/// So that degenerate triangles have directions and saliency too, of a surface about 1 large.
-constexpr float kLeastArea = 1e-12f;
 
 }  // namespace
 
 void GrowingCluster::add(Vec3f normal, float saliency, float area) {
-  const double weight = std::max(area, kLeastArea);
+  const double weight = DualGraph::weight(area);
   area_ += weight;
   saliency_sum_ += weight * static_cast<double>(saliency);
   mean_ = static_cast<float>(saliency_sum_ / area_);

@@ -12,12 +12,8 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kAssignGrain = 4096;
 constexpr double kLeastFall = 1e-3;
-/// So that degenerate triangles have centres too, of a surface about 1 large.
-constexpr float kLeastArea = 1e-12f;
-
-double weight(float area) { return static_cast<double>(std::max(area, kLeastArea)); }
 
 /// The nearest of several points: looked for outwards from where it would be along one axis.
 class NearestPoint {
@@ -83,13 +79,13 @@ class Lloyd {
   /// Gives each triangle to the nearest centre; returns the sum of squared distances by area.
   double assign() {
     const NearestPoint nearest(centers_);
-    std::vector<double> parts(graph_.face_count() / kGrain + 1, 0.0);
-    parallel_for(context_, graph_.face_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> parts(graph_.face_count() / kAssignGrain + 1, 0.0);
+    parallel_for(context_, graph_.face_count(), kAssignGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         const NearestPoint::Found found = nearest.find(Vec3d(graph_.centers[f]));
         of_face_[f] = found.point;
         squared_[f] = found.squared;
-        parts[begin / kGrain] += weight(graph_.areas[f]) * found.squared;
+        parts[begin / kAssignGrain] += DualGraph::weight(graph_.areas[f]) * found.squared;
       }
     });
     fill_empty();
@@ -104,8 +100,8 @@ class Lloyd {
                      Vec3d sum;
                      double area = 0;
                      for (const std::uint32_t f : members.of(c)) {
-                       sum += weight(graph_.areas[f]) * Vec3d(graph_.centers[f]);
-                       area += weight(graph_.areas[f]);
+                       sum += DualGraph::weight(graph_.areas[f]) * Vec3d(graph_.centers[f]);
+                       area += DualGraph::weight(graph_.areas[f]);
                      }
                      centers_[c] = sum / area;
                    }

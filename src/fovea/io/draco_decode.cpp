@@ -19,12 +19,11 @@
 #pragma GCC diagnostic pop
 
 #include "fovea/base/error.h"
+#include "fovea/io/format_error.h"
 
 namespace fovea::gltf {
 
 namespace {
-
-[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::format, message); }
 
 draco::DecoderBuffer buffer_of(std::span<const std::byte> stream) {
   draco::DecoderBuffer buffer;

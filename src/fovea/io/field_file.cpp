@@ -27,10 +27,6 @@ namespace {
 constexpr std::string_view kMagic = "\x93NUMPY";
 static_assert(std::endian::native == std::endian::little);
 
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 bool is_npy(std::span<const std::byte> bytes) { return as_text(bytes).starts_with(kMagic); }
 
 /// The header's text, and where the data begins.

@@ -18,7 +18,7 @@ Accessor read_accessor(ReadState& state, const JsonView& reference) {
   return state.data.read(state.data.accessor_index(reference));
 }
 
-AnimationSampler read_sampler(ReadState& state, const JsonView& json) {
+AnimationSampler read_animation_sampler(ReadState& state, const JsonView& json) {
   AnimationSampler sampler;
   sampler.interpolation = interpolation(json);
   const JsonView input = json.at("input");
@@ -64,7 +64,7 @@ Animation read_animation(ReadState& state, const JsonView& json) {
   Animation animation;
   animation.name = json.text("name");
   for (const JsonView& sampler : json.at("samplers").elements()) {
-    state.add(animation.samplers, read_sampler(state, sampler), sampler);
+    state.add(animation.samplers, read_animation_sampler(state, sampler), sampler);
   }
   for (const JsonView& channel : json.at("channels").elements()) {
     state.add(animation.channels, read_channel(state, channel, animation.samplers.size()), channel);

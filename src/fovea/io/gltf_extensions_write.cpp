@@ -30,7 +30,7 @@ constexpr std::string_view kTextureExtensions[] = {"EXT_texture_webp", "EXT_text
                                                    "KHR_texture_basisu", "MSFT_texture_dds"};
 
 template <class List>
-bool contains(const List& list, std::string_view name) {
+bool is_in(const List& list, std::string_view name) {
   return std::find(std::begin(list), std::end(list), name) != std::end(list);
 }
 
@@ -68,7 +68,7 @@ std::vector<std::string> merge(const std::vector<std::string>& listed, const Kee
   std::vector<std::string> result;
   std::copy_if(listed.begin(), listed.end(), std::back_inserter(result), keep);
   for (const std::string& name : others) {
-    if (!contains(result, name)) result.push_back(name);
+    if (!is_in(result, name)) result.push_back(name);
   }
   return result;
 }
@@ -80,10 +80,10 @@ void write_extension_lists(Json& root, const Model& model, bool quantized) {
   find_extensions(root, found);
   if (quantized) found.emplace(kQuantization);
   const auto is_used = [&](const std::string& name) {
-    return found.contains(name) || !contains(kStorageExtensions, name);
+    return found.contains(name) || !is_in(kStorageExtensions, name);
   };
   const std::vector<std::string> used = merge(model.extensions_used, is_used, found);
-  const auto is_listed = [&](const std::string& name) { return contains(used, name); };
+  const auto is_listed = [&](const std::string& name) { return is_in(used, name); };
   const std::vector<std::string> required =
       merge(model.extensions_required, is_listed, find_needed(root, found));
   refresh(root, "extensionsUsed", used, Json::array());

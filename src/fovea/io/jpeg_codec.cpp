@@ -20,14 +20,14 @@ namespace fovea {
 
 namespace {
 
-struct Failure {
+struct JpegFailure {
   jpeg_error_mgr manager;  // first, so that libjpeg's pointer to it is a pointer to this
   std::jmp_buf escape;
   std::array<char, JMSG_LENGTH_MAX> message{};
 };
 
 [[noreturn]] void on_error(j_common_ptr codec) {
-  auto* failure = reinterpret_cast<Failure*>(codec->err);
+  auto* failure = reinterpret_cast<JpegFailure*>(codec->err);
   codec->err->format_message(codec, failure->message.data());
   std::longjmp(failure->escape, 1);
 }
@@ -47,22 +47,22 @@ void on_progress(j_common_ptr codec) {
   }
 }
 
-jpeg_error_mgr* prepare(Failure& failure) {
+jpeg_error_mgr* prepare(JpegFailure& failure) {
   jpeg_error_mgr* manager = jpeg_std_error(&failure.manager);
   manager->error_exit = on_error;
   manager->emit_message = on_message;
   return manager;
 }
 
-struct Reader {
-  Failure failure;
+struct JpegReader {
+  JpegFailure failure;
   jpeg_decompress_struct codec{};
   jpeg_progress_mgr progress{};
 
-  Reader() { codec.err = prepare(failure); }
-  ~Reader() { jpeg_destroy_decompress(&codec); }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  JpegReader() { codec.err = prepare(failure); }
+  ~JpegReader() { jpeg_destroy_decompress(&codec); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
 
   bool start(std::span<const std::uint8_t> encoded) {
     if (setjmp(failure.escape)) return false;
@@ -102,7 +102,7 @@ void ink_row_to_rgb(const std::vector<std::uint8_t>& inks, bool inverted, std::u
 }
 
 struct JpegWriter {
-  Failure failure;
+  JpegFailure failure;
   jpeg_compress_struct codec{};
   unsigned char* buffer = nullptr;
   unsigned long size = 0;
@@ -141,7 +141,7 @@ struct JpegWriter {
 }  // namespace
 
 Image8 decode_jpeg(std::span<const std::uint8_t> encoded, const ImageInfo& info) {
-  Reader reader;
+  JpegReader reader;
   if (!reader.start(encoded)) reader.fail();
   if (static_cast<int>(reader.codec.output_width) != info.width ||
       static_cast<int>(reader.codec.output_height) != info.height)

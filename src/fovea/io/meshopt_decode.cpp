@@ -8,15 +8,13 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fovea/base/error.h"
+#include "fovea/io/format_error.h"
 #include "fovea/io/gltf_json.h"
 #include "fovea/io/meshopt_vertex_v1.h"
 
 namespace fovea::gltf {
 
 namespace {
-
-[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::format, message); }
 
 bool is_version_1(const MeshoptStream& s) { return !s.bytes.empty() && s.bytes[0] == std::byte{0xA1}; }
 

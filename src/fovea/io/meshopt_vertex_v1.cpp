@@ -26,7 +26,7 @@ Unsigned unzigzag(Unsigned v) {
   return static_cast<Unsigned>(v & 1 ? ~(v >> 1) : v >> 1);
 }
 
-std::uint8_t u8(std::byte b) { return std::to_integer<std::uint8_t>(b); }
+std::uint8_t number_of(std::byte b) { return std::to_integer<std::uint8_t>(b); }
 
 /// Reads a stream from its front; running dry is remembered and gives zeros.
 class Source {
@@ -76,7 +76,7 @@ class BlockDecoder {
   void read_deltas(std::size_t count) {
     const auto controls = source_.take(stride_ / 4);
     for (std::size_t k = 0; k < stride_; ++k) {
-      const int control = u8(controls[k / 4]) >> (k % 4 * 2) & 3;
+      const int control = number_of(controls[k / 4]) >> (k % 4 * 2) & 3;
       std::uint8_t* to = &deltas_[k * kMaxBlock];
       if (control == kZero) {
         std::fill_n(to, count, std::uint8_t{0});
@@ -92,7 +92,7 @@ class BlockDecoder {
     static constexpr int kBits[2][4] = {{0, 1, 2, 4}, {1, 2, 4, 8}};
     const auto header = source_.take((groups + 3) / 4);
     for (std::size_t g = 0; g < groups; ++g, to += kGroup) {
-      read_group(kBits[control][u8(header[g / 4]) >> (g % 4 * 2) & 3], to);
+      read_group(kBits[control][number_of(header[g / 4]) >> (g % 4 * 2) & 3], to);
     }
   }
 
@@ -108,22 +108,23 @@ class BlockDecoder {
     for (std::size_t i = 0; i < kGroup; ++i) {
       // Single bits are stored from the lowest up, wider ones from the highest down.
       const std::size_t slot = bits == 1 ? i % per_byte : per_byte - 1 - i % per_byte;
-      const int value = u8(packed[i / per_byte]) >> (slot * static_cast<std::size_t>(bits)) & sentinel;
-      to[i] = bits < 8 && value == sentinel ? u8(source_.take(1)[0]) : static_cast<std::uint8_t>(value);
+      const int value = number_of(packed[i / per_byte]) >> (slot * static_cast<std::size_t>(bits)) & sentinel;
+      to[i] =
+          bits < 8 && value == sentinel ? number_of(source_.take(1)[0]) : static_cast<std::uint8_t>(value);
     }
   }
 
   /// Takes bytes k … k + 3 of the element before to those of element i.
   void advance(std::size_t k, std::size_t i) {
-    const std::uint8_t channel = u8(channels_[k / 4]);
+    const std::uint8_t channel = number_of(channels_[k / 4]);
     if (channel == kBytes) {
       for (std::size_t b = k; b < k + 4; ++b) {
-        last_[b] = static_cast<std::byte>(u8(last_[b]) + unzigzag(delta(b, i)));
+        last_[b] = static_cast<std::byte>(number_of(last_[b]) + unzigzag(delta(b, i)));
       }
     } else if (channel == kWords) {
       for (std::size_t b = k; b < k + 4; b += 2) {
         const auto step = unzigzag(static_cast<std::uint16_t>(delta(b, i) | delta(b + 1, i) << 8));
-        const unsigned value = u8(last_[b]) + 256u * u8(last_[b + 1]) + step;
+        const unsigned value = number_of(last_[b]) + 256u * number_of(last_[b + 1]) + step;
         last_[b] = static_cast<std::byte>(value);
         last_[b + 1] = static_cast<std::byte>(value >> 8);
       }
@@ -143,8 +144,9 @@ class BlockDecoder {
 };
 
 bool are_valid(std::span<const std::byte> channels) {
-  return std::all_of(channels.begin(), channels.end(),
-                     [](std::byte c) { return u8(c) == kBytes || u8(c) == kWords || (u8(c) & 15) == kXor; });
+  return std::all_of(channels.begin(), channels.end(), [](std::byte c) {
+    return number_of(c) == kBytes || number_of(c) == kWords || (number_of(c) & 15) == kXor;
+  });
 }
 
 }  // namespace
@@ -157,7 +159,7 @@ bool decode_vertices_v1(std::span<const std::byte> stream, std::size_t count, st
                         std::byte* out) {
   const std::size_t tail = stride + stride / 4;
   const std::size_t padded_tail = std::max(tail, kMinTail);
-  if (stream.size() < 1 + padded_tail || u8(stream[0]) != 0xA1) return false;
+  if (stream.size() < 1 + padded_tail || number_of(stream[0]) != 0xA1) return false;
   const auto baseline = stream.last(tail).first(stride);
   const auto channels = stream.last(stride / 4);
   if (!are_valid(channels)) return false;

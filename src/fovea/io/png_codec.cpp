@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::size_t kMessageSize = 160;
 
-struct Failure {
+struct PngFailure {
   std::array<char, kMessageSize> message{};
 };
 
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
-  auto* failure = static_cast<Failure*>(png_get_error_ptr(png));
+  auto* failure = static_cast<PngFailure*>(png_get_error_ptr(png));
   std::snprintf(failure->message.data(), failure->message.size(), "%s", message);
   png_longjmp(png, 1);
 }
@@ -46,19 +46,19 @@ void on_read(png_structp png, png_bytep to, std::size_t count) {
 }
 
 /// A libpng reader and its input.
-struct Reader {
-  Failure failure;
+struct PngReader {
+  PngFailure failure;
   Source source;
   png_structp png = nullptr;
   png_infop info = nullptr;
 
-  explicit Reader(std::span<const std::uint8_t> encoded) : source{encoded.data(), encoded.size()} {
+  explicit PngReader(std::span<const std::uint8_t> encoded) : source{encoded.data(), encoded.size()} {
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
     if (png) info = png_create_info_struct(png);
   }
-  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
 
   /// Up to the first pixel, with everything set for 8 bits per channel, or 16 where the file has them and
   /// `is_deep`, and no palette.
@@ -97,7 +97,7 @@ std::vector<png_bytep> rows_of(std::uint8_t* pixels, int height, std::size_t row
 
 /// An image of the size that a header tells.
 template <class T>
-Image<T> sized(const Reader& reader) {
+Image<T> sized(const PngReader& reader) {
   return Image<T>(static_cast<int>(png_get_image_width(reader.png, reader.info)),
                   static_cast<int>(png_get_image_height(reader.png, reader.info)),
                   static_cast<int>(png_get_channels(reader.png, reader.info)), ColorEncoding::srgb);
@@ -111,7 +111,7 @@ void on_write(png_structp png, png_bytep from, std::size_t count) {
 void on_flush(png_structp) {}
 
 struct PngWriter {
-  Failure failure;
+  PngFailure failure;
   png_structp png = nullptr;
   png_infop info = nullptr;
 
@@ -141,7 +141,7 @@ struct PngWriter {
 }  // namespace
 
 Image8 decode_png(std::span<const std::uint8_t> encoded) {
-  Reader reader(encoded);
+  PngReader reader(encoded);
   if (!reader.read_header(false)) reader.fail();
   auto image = sized<std::uint8_t>(reader);
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
@@ -154,7 +154,7 @@ Image8 decode_png(std::span<const std::uint8_t> encoded) {
 }
 
 ImageF decode_deep_png(std::span<const std::uint8_t> encoded) {
-  Reader reader(encoded);
+  PngReader reader(encoded);
   if (!reader.read_header(true)) reader.fail();
   auto image = sized<float>(reader);
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);

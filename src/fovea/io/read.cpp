@@ -26,10 +26,6 @@ namespace {
 
 constexpr std::size_t kLookedAt = 4096;
 
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 FileFormat format_of_extension(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".gltf") return FileFormat::gltf;

@@ -8,14 +8,12 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "fovea/base/error.h"
+#include "fovea/io/format_error.h"
 #include "fovea/io/gltf_json.h"
 
 namespace fovea {
 
 namespace {
-
-[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::format, message); }
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -49,7 +47,7 @@ std::vector<std::byte> decode_base64(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const int digit = kTable[static_cast<unsigned char>(text[i])];
     if (digit == -1) continue;
-    if (digit < 0) fail(fmt::format("character {} of the base64 data is not a base64 digit", i));
+    if (digit < 0) gltf::fail(fmt::format("character {} of the base64 data is not a base64 digit", i));
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
     bit_count += 6;
     if (bit_count >= 8) {
@@ -57,7 +55,7 @@ std::vector<std::byte> decode_base64(std::string_view text) {
       bytes.push_back(static_cast<std::byte>(bits >> bit_count & 0xFF));
     }
   }
-  if (bit_count == 6) fail("the base64 data ends inside a byte");
+  if (bit_count == 6) gltf::fail("the base64 data ends inside a byte");
   return bytes;
 }
 
@@ -72,7 +70,7 @@ bool has_scheme(std::string_view uri) {
 /// Where the content of a data URI begins: after its first comma.
 std::size_t content_begin(std::string_view uri) {
   const std::size_t comma = uri.find(',');
-  if (comma == std::string_view::npos) fail("a data URI without \",\"");
+  if (comma == std::string_view::npos) gltf::fail("a data URI without \",\"");
   return comma + 1;
 }
 
@@ -130,7 +128,7 @@ std::string percent_decode(std::string_view text) {
     const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
     const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
     if (high < 0 || low < 0)
-      fail(fmt::format("\"%\" without two hexadecimal digits in {}", gltf::shown(text)));
+      gltf::fail(fmt::format("\"%\" without two hexadecimal digits in {}", gltf::shown(text)));
     out += static_cast<char>(high * 16 + low);
     i += 2;
   }
@@ -138,16 +136,17 @@ std::string percent_decode(std::string_view text) {
 }
 
 std::string relative_path_of_uri(std::string_view uri) {
-  if (has_scheme(uri)) fail(fmt::format("only files beside the model are read, not {}", gltf::shown(uri)));
+  if (has_scheme(uri))
+    gltf::fail(fmt::format("only files beside the model are read, not {}", gltf::shown(uri)));
   const std::string decoded = percent_decode(uri);
-  if (decoded.find('\0') != std::string::npos) fail("a file name with a NUL character");
+  if (decoded.find('\0') != std::string::npos) gltf::fail("a file name with a NUL character");
   const std::filesystem::path path = utf8_path(decoded);
   if (path.is_absolute() || path.has_root_path()) {
-    fail(fmt::format("only files beside the model are read, not {}", gltf::shown(decoded)));
+    gltf::fail(fmt::format("only files beside the model are read, not {}", gltf::shown(decoded)));
   }
   const std::filesystem::path normal = path.lexically_normal();
   if (normal.empty() || normal == "." || *normal.begin() == "..") {
-    fail(fmt::format("{} is not below the model's folder", gltf::shown(decoded)));
+    gltf::fail(fmt::format("{} is not below the model's folder", gltf::shown(decoded)));
   }
   const std::u8string text = normal.generic_u8string();
   return {text.begin(), text.end()};

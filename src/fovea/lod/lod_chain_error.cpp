@@ -26,7 +26,7 @@ constexpr double kStep = 1.0 / 30;
 /// Of all animations; more than that are looked at in longer steps.
 constexpr std::size_t kMostPoses = 8192;
 /// For what is between the poses of an animation.
-constexpr double kMargin = 1.01;
+constexpr double kErrorMargin = 1.01;
 /// Of samples that are looked at in every pose, over all poses; vertices are in any case.
 constexpr std::size_t kLooks = 20'000'000;
 /// Poses in which the error is nearly the largest are measured on all points, ...
@@ -169,7 +169,7 @@ class LodReference::Level {
   /// measured.
   std::optional<Pose> look_at_motion();
   LodError error() const {
-    return {original_.motion.empty() ? error_.max : kMargin * error_.max, error_.mean};
+    return {original_.motion.empty() ? error_.max : kErrorMargin * error_.max, error_.mean};
   }
 
  private:

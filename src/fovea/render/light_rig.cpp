@@ -9,7 +9,7 @@ namespace fovea {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kPiF = std::numbers::pi_v<float>;
 
 struct Lamp {
   Vec3f direction;  ///< To the lamp, unit.
@@ -79,7 +79,7 @@ Rgba light_to_eye(const SurfaceLook& look, Vec3f n, Vec3f v) {
     const float d = n_dot_h * n_dot_h * (a2 - 1) + 1;
     const float masking = n_dot_l * std::sqrt(n_dot_v * n_dot_v * (1 - a2) + a2) +
                           n_dot_v * std::sqrt(n_dot_l * n_dot_l * (1 - a2) + a2);
-    const float specular = a2 / (kPi * d * d) * 0.5f / masking * kPi * lamp.strength * n_dot_l;
+    const float specular = a2 / (kPiF * d * d) * 0.5f / masking * kPiF * lamp.strength * n_dot_l;
     const float fresnel = fifth_power(1 - v_dot_h);
     mirrored += specular * (1 - fresnel);
     edge += specular * fresnel;

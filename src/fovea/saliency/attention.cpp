@@ -22,8 +22,8 @@ namespace fovea {
 
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::infinity();
-constexpr std::size_t kGrain = 1 << 12;
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+constexpr std::size_t kRegionGrain = 1 << 12;
 
 /// Foci of one kind: those of attention, or those of neglect.
 using Foci = std::vector<Focus>;
@@ -52,7 +52,7 @@ void lower(float& label, double value) { label = std::min(label, static_cast<flo
 std::vector<float> label_cells(const Foci& foci, int size) {
   std::map<double, std::vector<GridCell>> by_weight;
   for (const Focus& focus : foci) by_weight[std::abs(focus.weight)].push_back(cell_of(focus));
-  std::vector<float> cells(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), kNone);
+  std::vector<float> cells(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), kNowhere);
   for (const auto& [weight, sources] : by_weight) {
     const std::vector<std::int32_t> distance = distance_transform(size, size, sources);
     for (std::size_t i = 0; i < cells.size(); ++i) lower(cells[i], distance[i] / weight);
@@ -96,7 +96,7 @@ class BackProjection {
     if (options_.visible_only && !depth_) depth_.emplace(scene_, view_, size_, context_);
     const std::vector<char> faces_eye =
         options_.visible_only ? vertices_that_face_the_eye(mesh) : std::vector<char>{};
-    parallel_for(context_, labels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, labels.size(), kRegionGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const Vec3d p(mesh.surface.positions[v]);
         const PicturePoint at = picture_point(view_, size_, p);
@@ -128,7 +128,7 @@ class BackProjection {
   void label_faces(const SceneMesh& mesh, const std::vector<float>& cells, VertexField& labels) {
     const Projection projection(view_, {size_, size_, 1});
     for (std::size_t f = 0; f < mesh.mesh->face_count(); ++f) {
-      float label = kNone;
+      float label = kNowhere;
       std::array<Vec3d, 3> eye;
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3d p(mesh.surface.positions[mesh.mesh->triangles[f][k].index()]);
@@ -312,7 +312,7 @@ AttentionLabels attention_labels(const Model& model, const RenderScene& scene, c
   if (options.on_surface) {
     SurfaceDistances distances(model, scene, view, size, reach, context);
     const auto label = [&](const Foci& of) {
-      VertexField field(distances.vertex_count(), kNone);
+      VertexField field(distances.vertex_count(), kNowhere);
       for (const Focus& focus : of) distances.add(focus, field);
       return distances.split(field);
     };
@@ -320,7 +320,7 @@ AttentionLabels attention_labels(const Model& model, const RenderScene& scene, c
     labels.neglected = label(neglected);
     return labels;
   }
-  for (const Mesh& mesh : model.meshes) labels.attended.emplace_back(mesh.surface.vertex_count(), kNone);
+  for (const Mesh& mesh : model.meshes) labels.attended.emplace_back(mesh.surface.vertex_count(), kNowhere);
   labels.neglected = labels.attended;
   BackProjection back(scene, view, options, context);
   if (!attended.empty()) back.add(label_cells(attended, size), labels.attended);

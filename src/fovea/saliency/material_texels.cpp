@@ -13,7 +13,7 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kTexelRowGrain = 64;
 constexpr float kByte = 1.0f / 255;
 
 /// A plane of f(r, g, b) of the stored bytes.
@@ -21,7 +21,7 @@ template <class F>
 ImageF plane_of(const Image8& image, const Context& context, F&& f) {
   ImageF plane(image.width, image.height, 1, ColorEncoding::linear);
   const int g = image.channels < 3 ? 0 : 1, b = image.channels < 3 ? 0 : 2;
-  parallel_for(context, static_cast<std::size_t>(image.height), kGrain,
+  parallel_for(context, static_cast<std::size_t>(image.height), kTexelRowGrain,
                [&](std::size_t begin, std::size_t end) {
                  for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
                    const std::uint8_t* texel = image.at(0, y);

@@ -17,7 +17,7 @@ namespace fovea {
 namespace {
 
 /// Rows that a thread takes at once.
-constexpr std::size_t kGrain = 32;
+constexpr std::size_t kRowGrain = 32;
 
 /// Three rows of colours, one after the other, with a texel before and one after each.
 class ColorRow {
@@ -61,7 +61,7 @@ struct SmoothRow {
 template <class F>
 void for_smooth_rows(const Image8& image, const Sampler& sampler, const Context& context, F&& f) {
   parallel_for(
-      context, static_cast<std::size_t>(image.height), kGrain, [&](std::size_t from, std::size_t to) {
+      context, static_cast<std::size_t>(image.height), kRowGrain, [&](std::size_t from, std::size_t to) {
         std::array<ColorRow, 3> rows{ColorRow(image.width), ColorRow(image.width), ColorRow(image.width)};
         const std::size_t count = rows[0].values().size(), stride = count / 3;
         std::vector<std::uint16_t> columns(count), out(count);
@@ -203,7 +203,7 @@ Image8 with_factor(const Image8& image, const std::array<double, 3>& light, cons
       display[k][i] = to_display(to_light(static_cast<std::uint8_t>(i)) * static_cast<float>(light[k]));
   }
   Image8 result(image.width, image.height, 3, image.encoding);
-  parallel_for(context, static_cast<std::size_t>(image.height), kGrain,
+  parallel_for(context, static_cast<std::size_t>(image.height), kRowGrain,
                [&](std::size_t begin, std::size_t end) {
                  for (std::size_t y = begin; y < end; ++y) {
                    const std::uint8_t* from = image.at(0, static_cast<int>(y));
@@ -247,7 +247,7 @@ TextureSignals texture_signals(const Image8& image, const Sampler& sampler,
   });
   bins.wrap(sampler);
   const SlidingEntropy entropy(options.entropy_window);
-  parallel_for(context, static_cast<std::size_t>(height), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, static_cast<std::size_t>(height), kRowGrain, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
       entropy.run(bins.row(y - half) - half, bins.stride(), columns, signals.entropy.at(0, y));
   });

@@ -13,7 +13,7 @@ namespace fovea {
 namespace {
 
 constexpr int kSize = 256;
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kSeenGrain = 1 << 13;
 
 /// The surface with `up` along +y, where views expect it.
 TriMesh upright(const Surface& surface, UpAxis up) {
@@ -65,7 +65,7 @@ VertexField visibility(const Surface& surface, const Adjacency& adjacency, const
   const auto share = 1 / static_cast<float>(views.size());
   for (const View& view : views) {
     const DepthMap depth(scene, view, kSize, context);
-    parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, count, kSeenGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const double cosine = dot(normals[v], view.back);
         if (cosine > 0 && depth.shows(Vec3d(mesh.positions[v])))

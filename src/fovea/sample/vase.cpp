@@ -10,7 +10,7 @@ namespace fovea::sample {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kTurn = 2 * std::numbers::pi;  // radians
 
 /// Half of the section through the axis, (radius, height): under the foot, up the outside, over the
 /// lip and down the inside.
@@ -54,7 +54,7 @@ Sheet revolve(const std::vector<Ring>& wall, int columns, const Chart& chart) {
   sheet.rows = static_cast<int>(wall.size()) - 1;
   sheet.position = [&wall, columns](int column, int row) {
     constexpr int kLobes = 18;
-    const double angle = 2 * kPi * (column % columns) / columns;
+    const double angle = kTurn * (column % columns) / columns;
     const Ring& ring = wall[static_cast<std::size_t>(row)];
     const double radius = ring.point.x + ring.lobes * std::cos(kLobes * angle);
     return Vec3d{-radius * std::sin(angle), ring.point.y, -radius * std::cos(angle)};
@@ -98,7 +98,7 @@ Sheet handle(double side, double detail, const Chart& chart) {
     const Vec3d outward = cross(across, tangent);
     const bool cap = row == 0 || row == length + 2;
     const double t = static_cast<double>(i) / length, swell = 1 + 0.25 * std::pow(2 * t - 1, 4);
-    const double angle = 2 * kPi * (column % columns) / columns;
+    const double angle = kTurn * (column % columns) / columns;
     const Vec3d offset = outward * (0.020 * std::cos(angle)) + across * (0.032 * std::sin(angle));
     const Vec3d p = Vec3d{at(i).x, at(i).y, 0} + offset * (cap ? 0 : swell);
     return Vec3d{side * p.x, p.y, side * p.z};
@@ -133,7 +133,7 @@ SplitPart vase_part(const VaseAtlas& atlas, double detail, int material) {
 
 Model make_vase(double detail, Context& context) {
   const VaseAtlas atlas;
-  const VaseMeasure measure{2 * kPi * 0.455, section().length(kFoot, kLipOutside)};
+  const VaseMeasure measure{kTurn * 0.455, section().length(kFoot, kLipOutside)};
   Model model = empty_model("vase");
   const PaintedMaterial glaze{"glazed", ImageFormat::png, 0.35, false, true};
   const int material = add_material(model, glaze, paint_vase(atlas, measure, context));

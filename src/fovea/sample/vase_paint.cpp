@@ -12,7 +12,7 @@ namespace fovea::sample {
 namespace {
 
 constexpr Color kCobalt = rgb(0x1D3F94), kDeep = rgb(0x101F52), kWhite = rgb(0xEFEBDD), kSky = rgb(0x7FA3D6),
-                kCream = rgb(0xF2E6C9), kGold = rgb(0xC79A3C), kRed = rgb(0xB8412A), kClay = rgb(0xA9764F);
+                kCream = rgb(0xF2E6C9), kGold = rgb(0xC79A3C), kBrick = rgb(0xB8412A), kClay = rgb(0xA9764F);
 
 constexpr double kPixel = 1.0 / 380;  ///< Size of a texel on the body in units of length, about.
 
@@ -32,7 +32,7 @@ Color waves(double a, double b, double pixel) {
     const double d = std::sqrt(x * x + y * y);
     if (d > kRadius && row < first + 6) continue;
     const Cell tint = cell_noise({column + shift + 0.5, row + 0.5}, 11);
-    const std::array<Color, 4> hearts{kRed, kGold, kWhite, kSky};
+    const std::array<Color, 4> hearts{kBrick, kGold, kWhite, kSky};
     Color c = kDeep;
     c = cover(c, kWhite, d - 0.455, pixel);
     c = cover(c, kCobalt, d - 0.375, pixel);
@@ -157,7 +157,7 @@ class Body {
     const double width = measure_.around / kCount;
     const double x = (kCount * s - std::round(kCount * s)) * width, y = (t - 0.5) * 0.05 * measure_.along;
     const double d = std::sqrt(x * x + y * y);
-    return cover(cover(kCobalt, kWhite, d - 0.022, kPixel), kRed, d - 0.010, kPixel);
+    return cover(cover(kCobalt, kWhite, d - 0.022, kPixel), kBrick, d - 0.010, kPixel);
   }
 
   Color field(double s, double t) const {
@@ -188,7 +188,7 @@ Color clay(double s, double t) {
   return kClay * (1 + 0.10 * grain);
 }
 
-Color handle(double s, double t) {
+Color handle_ring(double s, double t) {
   const double stripe = to_whole(15 * t) - 0.16, spine = std::abs(s - 0.25) - 0.08;
   return cover(cover(kCobalt, kWhite, stripe, 0.08), kGold, spine, 0.01);
 }
@@ -206,7 +206,7 @@ Image8 paint_vase(const VaseAtlas& atlas, const VaseMeasure& measure, const Cont
   paint(image, atlas.inside, kGutter, context, inside);
   paint(image, atlas.lip, kGutter, context, [](double, double) { return kGold; });
   paint(image, atlas.bottom, kGutter, context, clay);
-  for (const Chart& chart : atlas.handles) paint(image, chart, kGutter, context, handle);
+  for (const Chart& chart : atlas.handles) paint(image, chart, kGutter, context, handle_ring);
   return image;
 }
 

@@ -26,11 +26,9 @@ int find_channel(const CollapseState& state, Semantic semantic, int set) {
   return -1;
 }
 
-using Plane = CornerPlanes::Plane;
-
 /// A number of a plane at pixels, in the order of operations that planes have.
-FOVEA_WIDE_PART void plane_at(const Plane& plane, int number, const WideFloats& x, const WideFloats& y,
-                              WideFloats& out) {
+FOVEA_WIDE_PART void plane_at(const CornerPlanes::Plane& plane, int number, const WideFloats& x,
+                              const WideFloats& y, WideFloats& out) {
   out = plane.at_0[number] + plane.dx[number] * x + plane.dy[number] * y;
 }
 
@@ -279,8 +277,8 @@ FOVEA_WIDE_PART void FaceValues::Shading::light_up(const Samples& at, WideWords&
 }
 
 /// A number of the surface.
-FOVEA_WIDE_PART void FaceValues::Shading::on_surface(const Plane& plane, int number, const Samples& at,
-                                                     WideFloats& out) {
+FOVEA_WIDE_PART void FaceValues::Shading::on_surface(const CornerPlanes::Plane& plane, int number,
+                                                     const Samples& at, WideFloats& out) {
   plane_at(plane, number, at.x, at.y, out);
   out *= at.over_w;
 }

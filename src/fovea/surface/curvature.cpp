@@ -6,7 +6,7 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kCurvatureGrain = 1 << 13;
 
 /// Twice the area of a triangle along its normal.
 Vec3d area_vector(const Surface& surface, std::uint32_t triangle) {
@@ -18,7 +18,7 @@ Vec3d area_vector(const Surface& surface, std::uint32_t triangle) {
 /// Calls f(vertex) for all vertices.
 template <class F>
 void for_vertices(const Adjacency& adjacency, const Context& context, F&& f) {
-  parallel_for(context, adjacency.vertex_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, adjacency.vertex_count(), kCurvatureGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) f(static_cast<std::uint32_t>(v));
   });
 }

@@ -12,7 +12,7 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 12;
+constexpr std::size_t kHalfEdgeGrain = 1 << 12;
 /// Angles around a vertex that are more than a full turn by no more than this are flat but for rounding.
 constexpr double kFlat = 1e-9;
 /// Windows narrower than this part of their edge carry nothing that rounding has not made.
@@ -29,7 +29,7 @@ GeodesicSurface::GeodesicSurface(const Surface& surface, const Adjacency& adjace
       bends_(surface.positions.size(), Bend::never),
       full_turn_(surface.positions.size(), 0),
       adjacency_(adjacency) {
-  parallel_for(context, surface.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, surface.triangles.size(), kHalfEdgeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const auto& t = surface.triangles[f];
       for (std::size_t k = 0; k < 3; ++k) {
@@ -47,7 +47,7 @@ GeodesicSurface::GeodesicSurface(const Surface& surface, const Adjacency& adjace
   });
   link_edges();
   // Fans of different vertices have different half-edges.
-  parallel_for(context, bends_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, bends_.size(), kHalfEdgeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) judge(static_cast<std::uint32_t>(v));
   });
 }

@@ -19,7 +19,7 @@ namespace {
 
 /// Vertices whose neighbourhoods one thread finds together: few, as some meshes are a hundred times as dense
 /// in places, and not fewer, as a geodesic search has arrays of the size of the mesh.
-constexpr std::size_t kGrain = 1 << 9;
+constexpr std::size_t kSearchGrain = 1 << 9;
 /// More weight to the area than this many times the mean, or less than one part in it, the filter does not
 /// tell apart.
 constexpr double kMostDensity = 100;
@@ -325,7 +325,7 @@ std::vector<std::vector<VertexField>> gaussian_averages(const Surface& surface, 
   if (count == 0 || fields.empty()) return results;
   const Samples samples(fields, counted);
   const auto run = [&](auto&& make_search) {
-    parallel_for_or_throw(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for_or_throw(context, count, kSearchGrain, [&](std::size_t begin, std::size_t end) {
       auto search = make_search();
       Averager averager(sigmas, cutoff, counted);
       for (std::size_t v = begin; v < end; ++v) {

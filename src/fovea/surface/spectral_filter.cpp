@@ -12,7 +12,7 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kFilterGrain = 1 << 13;
 /// The Laplacian takes no vertex away faster than this over the mean area of a vertex; a regular one does
 /// with 3.5.
 constexpr double kFastest = 20;
@@ -108,7 +108,7 @@ SpectralFilter::SpectralFilter(const Surface& surface, const Adjacency& adjacenc
   const double d = diagonal(surface);
   const double fastest =
       total > 0 ? std::min(kFastest * static_cast<double>(used) / total, kMostDetail / (d * d)) : 1;
-  parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, count, kFilterGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<double> weights;
     for (std::size_t i = begin; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(i);
@@ -191,7 +191,7 @@ void SpectralFilter::run_together(std::span<const VertexField> fields,
     }
     // T_1 = X f, T_k+1 = 2 X T_k − T_k−1; the new one takes the place of the oldest.
     const float factor = k == 1 ? 1.0f : 2.0f, subtract = k == 1 ? 0.0f : 1.0f;
-    parallel_for_or_throw(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for_or_throw(context, count, kFilterGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         Number flow = leave_[v] * now[v];
         for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) flow -= rate_[i] * now[column_[i]];

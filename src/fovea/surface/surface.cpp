@@ -12,7 +12,7 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kNeighborGrain = 1 << 13;
 
 /// Counts per item to where each item's list begins; one more at the end.
 void add_up(std::vector<std::uint32_t>& counts) {
@@ -82,7 +82,7 @@ Adjacency::Adjacency(const Surface& surface, const Context& context) {
 
   // Twice over: how many, then which.
   const auto for_neighbors = [&](auto&& f) {
-    parallel_for(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, count, kNeighborGrain, [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> found;
       for (std::size_t v = begin; v < end; ++v) {
         found.clear();

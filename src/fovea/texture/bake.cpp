@@ -15,7 +15,7 @@ namespace fovea {
 namespace {
 
 /// Rows that a thread bakes at once.
-constexpr std::size_t kGrain = 16;
+constexpr std::size_t kBakedRowGrain = 16;
 /// Looks along the longer side of what a texel covers.
 constexpr int kAnisotropy = 4;
 
@@ -68,7 +68,7 @@ std::vector<Image8> baked(std::span<const BakeSource> sources, const TexelOrigin
       if (results[s].has_alpha()) out[alpha] = byte(value.a);
     }
   };
-  parallel_for_or_throw(context, static_cast<std::size_t>(origins.height), kGrain,
+  parallel_for_or_throw(context, static_cast<std::size_t>(origins.height), kBakedRowGrain,
                         [&](std::size_t begin, std::size_t end) {
                           for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
                             for (int x = 0; x < origins.width; ++x) {

@@ -17,7 +17,7 @@ namespace {
 using Keys = std::span<std::uint64_t>;
 
 /// Keys that a thread takes at once.
-constexpr std::size_t kGrain = std::size_t{1} << 18;
+constexpr std::size_t kKeyGrain = std::size_t{1} << 18;
 
 // Buckets are cut at steps of 1/32 to 1/64 of the value: about the logarithm, since most edges of a picture
 // are far below the largest. So most buckets fit a cache.
@@ -36,9 +36,9 @@ using BucketTable = std::array<std::size_t, kBuckets>;
 /// Puts keys into buckets: each chunk counts its own, then puts them after those of lower buckets and those
 /// of the chunks before it. Returns where buckets begin, and the end.
 std::vector<std::size_t> put_into_buckets(Keys from, Keys to, int low_bit, const Context& context) {
-  std::vector<BucketTable> tables((from.size() + kGrain - 1) / kGrain);
-  parallel_for(context, from.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    BucketTable& table = tables[begin / kGrain];
+  std::vector<BucketTable> tables((from.size() + kKeyGrain - 1) / kKeyGrain);
+  parallel_for(context, from.size(), kKeyGrain, [&](std::size_t begin, std::size_t end) {
+    BucketTable& table = tables[begin / kKeyGrain];
     table.fill(0);
     for (const std::uint64_t key : from.subspan(begin, end - begin)) ++table[bucket_of(key >> low_bit)];
   });
@@ -48,8 +48,8 @@ std::vector<std::size_t> put_into_buckets(Keys from, Keys to, int low_bit, const
     for (BucketTable& table : tables) next += std::exchange(table[b], next);
     first.push_back(next);
   }
-  parallel_for(context, from.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    BucketTable& next = tables[begin / kGrain];
+  parallel_for(context, from.size(), kKeyGrain, [&](std::size_t begin, std::size_t end) {
+    BucketTable& next = tables[begin / kKeyGrain];
     for (const std::uint64_t key : from.subspan(begin, end - begin))
       to[next[bucket_of(key >> low_bit)]++] = key;
   });

@@ -13,8 +13,8 @@ namespace fovea {
 
 namespace {
 
-constexpr std::size_t kPoints = std::size_t{1} << 13;
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kMostSights = std::size_t{1} << 13;
+constexpr std::size_t kSightGrain = 1024;
 
 }  // namespace
 
@@ -22,10 +22,10 @@ ImageSights::ImageSights(const Model& model, std::span<const AtlasFace> faces,
                          std::span<const VertexField> field, std::vector<double> pixels)
     : pixels_(std::move(pixels)) {
   const std::vector<UvSlopes> slopes = picture_slopes(model, faces);
-  for (const SurfacePoint& point : spread_points(model, faces, field, kPoints))
+  for (const SurfacePoint& point : spread_points(model, faces, field, kMostSights))
     sights_.push_back({single(uv_at(faces[point.face], point.weights)), slopes[point.face], point.counts});
   if (!sights_.empty()) return;
-  const auto side = static_cast<std::size_t>(std::sqrt(kPoints));
+  const auto side = static_cast<std::size_t>(std::sqrt(kMostSights));
   for (std::size_t i = 0; i < side * side; ++i) {
     const auto at = [&](std::size_t k) { return (static_cast<double>(k) + 0.5) / static_cast<double>(side); };
     sights_.push_back({single({at(i % side), at(i / side)}), {{1, 0}, {0, 1}}, 1});
@@ -43,7 +43,7 @@ std::vector<Rgba> ImageLoss::looks(const Image8& image, const Context& context) 
   const MipMap map = mip_map(image, meaning_);
   const std::size_t count = sights_.pixels().size();
   std::vector<Rgba> result(sights_.all().size() * count);
-  parallel_for_or_throw(context, sights_.all().size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for_or_throw(context, sights_.all().size(), kSightGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ImageSights::Sight& sight = sights_.all()[i];
       for (std::size_t p = 0; p < count; ++p)

@@ -15,8 +15,6 @@ namespace fovea {
 
 namespace {
 
-/// No image gets smaller than this many halves of what it was.
-constexpr int kMostHalvings = 5;
 constexpr int kLeastQuality = 15, kMostQuality = 98;
 
 /// PNG has no quality, so it comes in more sizes: so many for each half.

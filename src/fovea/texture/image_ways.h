@@ -15,6 +15,9 @@
 
 namespace fovea {
 
+/// No image gets smaller than so many halves of what it was.
+inline constexpr int kMostHalvings = 5;
+
 /// A way to store an image.
 struct ImageWay {
   int width = 0, height = 0;

@@ -14,7 +14,7 @@ namespace fovea {
 namespace {
 
 /// Under no triangle of the simpler surface, and left as it was.
-constexpr std::uint8_t kBeyond = 2;
+constexpr std::uint8_t kOutside = 2;
 /// Texels around what charts newly cover that are filled from there.
 constexpr int kMargin = 8;
 
@@ -87,7 +87,7 @@ void AtlasRebake::keep_beyond(TexelOrigins& origins, const Context& context) con
       const std::size_t i = origins.index(x, y);
       if (origins.drawn[i] != 0 || (before[i] == 0 && is_new[i] != 0)) continue;
       origins.texels[i] = {center(origins, x, y), 0};
-      origins.drawn[i] = kBeyond;
+      origins.drawn[i] = kOutside;
     }
   }
 }
@@ -131,7 +131,7 @@ Image8 AtlasRebake::baked(const Image8& image, const TexelMeaning& meaning, cons
   Image8 result = std::move(fovea::baked({&source, 1}, from, slopes, context)[0]);
   const auto width = static_cast<std::size_t>(image.channels);
   for (std::size_t i = 0; i < from.drawn.size(); ++i) {
-    if (from.drawn[i] == kBeyond) std::copy_n(&image.pixels[i * width], width, &result.pixels[i * width]);
+    if (from.drawn[i] == kOutside) std::copy_n(&image.pixels[i * width], width, &result.pixels[i * width]);
   }
   return result;
 }

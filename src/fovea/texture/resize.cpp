@@ -19,7 +19,7 @@ namespace fovea {
 namespace {
 
 /// Rows that a thread takes at once.
-constexpr std::size_t kGrain = 16;
+constexpr std::size_t kResizedRowGrain = 16;
 constexpr double kLobes = 3;
 
 double lanczos(double x) {
@@ -174,7 +174,7 @@ Image8 resized(const Image8& image, int width, int height, const TexelMeaning& m
 
   std::vector<float> rows(narrow * static_cast<std::size_t>(image.height));  // [old height × new width]
   const Filter across(image.width, width, wrap_u);
-  parallel_for(context, static_cast<std::size_t>(image.height), kGrain,
+  parallel_for(context, static_cast<std::size_t>(image.height), kResizedRowGrain,
                [&](std::size_t begin, std::size_t end) {
                  std::vector<Decoded> decoded(static_cast<std::size_t>(image.width));
                  for (std::size_t y = begin; y < end; ++y) {
@@ -191,19 +191,20 @@ Image8 resized(const Image8& image, int width, int height, const TexelMeaning& m
 
   Image8 result(width, height, channels, image.encoding);
   const Filter down(image.height, height, wrap_v);
-  parallel_for(context, static_cast<std::size_t>(height), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> sum(narrow);
-    for (std::size_t y = begin; y < end; ++y) {
-      std::fill(sum.begin(), sum.end(), 0.0f);
-      for (const Filter::Tap& tap : down.taps(static_cast<int>(y))) {
-        const float* row = rows.data() + static_cast<std::size_t>(tap.texel) * narrow;
-        for (std::size_t i = 0; i < narrow; ++i) sum[i] += tap.weight * row[i];
-      }
-      std::uint8_t* out = result.at(0, static_cast<int>(y));
-      for (std::size_t i = 0; i < narrow; i += static_cast<std::size_t>(channels))
-        mixing.encode(sum.data() + i, out + i);
-    }
-  });
+  parallel_for(context, static_cast<std::size_t>(height), kResizedRowGrain,
+               [&](std::size_t begin, std::size_t end) {
+                 std::vector<float> sum(narrow);
+                 for (std::size_t y = begin; y < end; ++y) {
+                   std::fill(sum.begin(), sum.end(), 0.0f);
+                   for (const Filter::Tap& tap : down.taps(static_cast<int>(y))) {
+                     const float* row = rows.data() + static_cast<std::size_t>(tap.texel) * narrow;
+                     for (std::size_t i = 0; i < narrow; ++i) sum[i] += tap.weight * row[i];
+                   }
+                   std::uint8_t* out = result.at(0, static_cast<int>(y));
+                   for (std::size_t i = 0; i < narrow; i += static_cast<std::size_t>(channels))
+                     mixing.encode(sum.data() + i, out + i);
+                 }
+               });
   if (meaning.alpha_cutoff && image.has_alpha()) {
     const int limit = std::clamp(static_cast<int>(std::ceil(*meaning.alpha_cutoff * 255)), 1, 255);
     keep_coverage(result, coverage(image, limit), *meaning.alpha_cutoff);

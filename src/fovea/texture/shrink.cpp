@@ -36,9 +36,6 @@ constexpr std::int64_t kMostTexels = std::int64_t{1} << 28;
 /// smaller copies of a texture, which a warp only mixes.
 constexpr int kLeastReduction = 4;
 
-/// How often the sides of all images are halved alike, at most, to see whether that does better.
-constexpr int kMostHalvings = 5;
-
 /// What loses up to so many times as much as the best may be the best with finer qualities.
 constexpr double kNearLoss = 1.2;
 /// How many times more or less what is lost of colours is tried to count.

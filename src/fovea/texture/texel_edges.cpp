@@ -15,7 +15,7 @@ namespace fovea {
 namespace {
 
 /// Rows that a thread takes at once; it smooths one more.
-constexpr std::size_t kGrain = 16;
+constexpr std::size_t kEdgeRowGrain = 16;
 /// Weights are below 2⁹: √3 · 255 at most.
 constexpr int kWholeBits = 9;
 /// More would soon tell weights apart that differ by rounding only.
@@ -70,19 +70,20 @@ TexelEdges::TexelEdges(const Image8& image, double sigma, const Context& context
 
   keys_.resize(first_edge(height_ - 1) + w - 1);
   const GaussianRows rows(image, sigma);
-  parallel_for(context, static_cast<std::size_t>(height_), kGrain, [&](std::size_t begin, std::size_t end) {
-    GaussianRows::Scratch scratch;
-    std::vector<double> row(rows.planes() * rows.width()), next(row.size());
-    Row weights(rows.width());
-    rows.smooth(static_cast<int>(begin), scratch, next);
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      row.swap(next);
-      const bool is_last = y + 1 == height_;
-      if (!is_last) rows.smooth(y + 1, scratch, next);
-      weights.set(row, is_last ? std::span<const double>() : next, unit_);
-      add_row(y, weights, keys_.data() + first_edge(y));
-    }
-  });
+  parallel_for(context, static_cast<std::size_t>(height_), kEdgeRowGrain,
+               [&](std::size_t begin, std::size_t end) {
+                 GaussianRows::Scratch scratch;
+                 std::vector<double> row(rows.planes() * rows.width()), next(row.size());
+                 Row weights(rows.width());
+                 rows.smooth(static_cast<int>(begin), scratch, next);
+                 for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                   row.swap(next);
+                   const bool is_last = y + 1 == height_;
+                   if (!is_last) rows.smooth(y + 1, scratch, next);
+                   weights.set(row, is_last ? std::span<const double>() : next, unit_);
+                   add_row(y, weights, keys_.data() + first_edge(y));
+                 }
+               });
   sort_by_high_bits(keys_, number_bits_, context);
 }
 

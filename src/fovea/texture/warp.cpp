@@ -14,7 +14,7 @@ namespace fovea {
 namespace {
 
 /// Rows of nodes that a thread takes at once.
-constexpr std::size_t kGrain = 16;
+constexpr std::size_t kNodeRowGrain = 16;
 /// Of a cell's area: what a corner's triangle has to keep.
 constexpr double kLeastCorner = 0.02;
 /// Part of the way to its neighbours that a node relaxes in a round; all of it lets neighbours change places
@@ -131,7 +131,7 @@ class Moving {
 
   template <class Body>
   void over_nodes(const Context& context, const Body& body) {
-    parallel_for(context, static_cast<std::size_t>(rows_ + 1), kGrain,
+    parallel_for(context, static_cast<std::size_t>(rows_ + 1), kNodeRowGrain,
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t j = begin; j < end; ++j)
                      for (int i = 0; i <= columns_; ++i) body(i, static_cast<int>(j));
@@ -140,10 +140,11 @@ class Moving {
 
   template <class Body>
   void over_cells(const Context& context, const Body& body) {
-    parallel_for(context, static_cast<std::size_t>(rows_), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = begin; j < end; ++j)
-        for (int i = 0; i < columns_; ++i) body(i, static_cast<int>(j));
-    });
+    parallel_for(context, static_cast<std::size_t>(rows_), kNodeRowGrain,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t j = begin; j < end; ++j)
+                     for (int i = 0; i < columns_; ++i) body(i, static_cast<int>(j));
+                 });
   }
 
   /// Calls `visit(a, b)` for nodes across from each other on borders that are joined, and whether they slide
