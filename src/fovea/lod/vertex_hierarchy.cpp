@@ -22,7 +22,7 @@ void append(std::vector<float>& to, const std::vector<float>& from, ValueId valu
 class HierarchyBuilder {
  public:
   HierarchyBuilder(const Model& original, const MultiTessellation& levels)
-      : levels_(levels), record_(levels.record), live_(original, levels) {
+      : record_(levels.record), live_(original, levels) {
     for (std::size_t m = 0; m < original.meshes.size(); ++m) {
       first_face_.push_back(face_count_);
       face_count_ += static_cast<std::uint32_t>(original.meshes[m].surface.face_count());
@@ -76,7 +76,6 @@ class HierarchyBuilder {
     return corner_node_[3 * std::size_t{first_face_[m]} + corner];
   }
 
-  const MultiTessellation& levels_;
   const CollapseRecord& record_;
   LiveLevel live_;
   std::uint32_t face_count_ = 0;

@@ -26,7 +26,7 @@ class VertexNotes {
     std::uint32_t at = (vertex * 0x9E3779B1u) >> shift_;
     // Nothing foretells whether a vertex is known; so the loop ends for either reason, and most often at
     // once.
-    while ((notes_[at].vertex != vertex) & (notes_[at].vertex != kInvalid)) at = (at + 1) & mask;
+    while (int{notes_[at].vertex != vertex} & int{notes_[at].vertex != kInvalid}) at = (at + 1) & mask;
     notes_[at].vertex = vertex;
     return at;
   }
