@@ -1,13 +1,15 @@
-// Pruning against all pairs, as Markdown: hulls.mjs FOVEA FOLDER MODEL... fits each model with one ladder of triangles
+// Pruning against all pairs, as Markdown: hulls.mjs [--fineness N] FOVEA FOLDER MODEL... fits each model with one ladder of triangles
 // and one of images, once by pruning and once by drawing all pairs, from the usual 24 views of 256 pixels, and says how far the way
-// is below the lower hull of all pairs at equal bytes. A minute for each.
+// is below the lower hull of all pairs at equal bytes. A minute for each; finer ladders have N rungs for each usual one, and N² times the pairs.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 
-const [fovea, folder, ...models] = process.argv.slice(2);
+const words = process.argv.slice(2), at = words.indexOf('--fineness');
+const fineness = at < 0 ? '1' : words.splice(at, 2)[1];
+const [fovea, folder, ...models] = words;
 if (!fovea || !folder || models.length === 0) {
-  console.error('usage: hulls.mjs FOVEA FOLDER MODEL...');
+  console.error('usage: hulls.mjs [--fineness N] FOVEA FOLDER MODEL...');
   process.exit(2);
 }
 mkdirSync(folder, { recursive: true });
@@ -17,7 +19,7 @@ const out = join(folder, 'fitted.glb'), curve = join(folder, 'curve.json');
 function way(model, search) {
   // A budget of a few bytes walks to the end.
   const report = JSON.parse(execFileSync(fovea, ['fit', model, '-o', out, '--force', '--bytes', '1', '--allow-miss', '--views',
-    'rhombicuboctahedron', '--view-size', '256', '--search', search, '--curve', curve, '--json'], quiet));
+    'rhombicuboctahedron', '--view-size', '256', '--search', search, '--fineness', fineness, '--curve', curve, '--json'], quiet));
   return { ...JSON.parse(readFileSync(curve)), drawn: report.result.pictures_of, seconds: report.seconds };
 }
 

@@ -15,12 +15,12 @@ namespace {
 
 namespace SMS = CGAL::Surface_mesh_simplification;
 using Kernel = CGAL::Simple_cartesian<double>;
-using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
-using Policies = SMS::GarlandHeckbert_plane_policies<Surface, Kernel>;
+using CgalSurface = CGAL::Surface_mesh<Kernel::Point_3>;
+using Policies = SMS::GarlandHeckbert_plane_policies<CgalSurface, Kernel>;
 
-Surface surface_from(const TriMesh& mesh) {
-  Surface surface;
-  std::vector<Surface::Vertex_index> vertices;
+CgalSurface surface_from(const TriMesh& mesh) {
+  CgalSurface surface;
+  std::vector<CgalSurface::Vertex_index> vertices;
   vertices.reserve(mesh.vertex_count());
   for (const Vec3f& p : mesh.positions) vertices.push_back(surface.add_vertex({p.x, p.y, p.z}));
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -29,9 +29,9 @@ Surface surface_from(const TriMesh& mesh) {
   return surface;
 }
 
-std::uint64_t simplify_surface(Surface& surface, double ratio) {
+std::uint64_t simplify_surface(CgalSurface& surface, double ratio) {
   if (surface.number_of_faces() == 0) return 0;
-  const SMS::Count_ratio_stop_predicate<Surface> stop(ratio);
+  const SMS::Count_ratio_stop_predicate<CgalSurface> stop(ratio);
   const Policies policies(surface);
   const SMS::Bounded_normal_change_filter<> filter;
   SMS::edge_collapse(
@@ -43,11 +43,11 @@ std::uint64_t simplify_surface(Surface& surface, double ratio) {
 }  // namespace
 
 PeerWork cgal_peer(const Model& model, double ratio) {
-  auto surfaces = std::make_shared<std::vector<Surface>>();
+  auto surfaces = std::make_shared<std::vector<CgalSurface>>();
   for (const Mesh& mesh : model.meshes) surfaces->push_back(surface_from(mesh.surface));
   return [surfaces, ratio] {
     std::uint64_t triangles = 0;
-    for (Surface& surface : *surfaces) triangles += simplify_surface(surface, ratio);
+    for (CgalSurface& surface : *surfaces) triangles += simplify_surface(surface, ratio);
     return triangles;
   };
 }

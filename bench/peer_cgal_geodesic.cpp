@@ -9,19 +9,20 @@
 namespace fovea::bench {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-using ShortestPaths = CGAL::Surface_mesh_shortest_path<CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>>;
+using ExactKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using ExactMesh = CGAL::Surface_mesh<ExactKernel::Point_3>;
+using ShortestPaths =
+    CGAL::Surface_mesh_shortest_path<CGAL::Surface_mesh_shortest_path_traits<ExactKernel, ExactMesh>>;
 
 }  // namespace
 
 std::vector<double> cgal_geodesics(const Surface& surface, std::uint32_t source,
                                    std::span<const std::uint32_t> targets) {
-  Mesh mesh;
-  std::vector<Mesh::Vertex_index> vertices;
+  ExactMesh mesh;
+  std::vector<ExactMesh::Vertex_index> vertices;
   for (const Vec3f& p : surface.positions) vertices.push_back(mesh.add_vertex({p.x, p.y, p.z}));
   for (const auto& [a, b, c] : surface.triangles) {
-    if (mesh.add_face(vertices[a], vertices[b], vertices[c]) == Mesh::null_face()) return {};
+    if (mesh.add_face(vertices[a], vertices[b], vertices[c]) == ExactMesh::null_face()) return {};
   }
   ShortestPaths paths(mesh);
   paths.add_source_point(vertices[source]);

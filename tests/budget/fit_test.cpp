@@ -237,6 +237,19 @@ TEST(Fit, GrowingEndsAtTheBudgetToo) {
   EXPECT_GT(result.chosen.psnr_db, BudgetFit(model, quick(), context).within(bytes).chosen.psnr_db - 0.5);
 }
 
+TEST(Fit, FinerLaddersHaveMoreRungsAndDoNoWorse) {
+  const Model model = hills();
+  Context context;
+  FitOptions options = quick();
+  BudgetFit usual(model, options, context);
+  options.fineness = 3;
+  BudgetFit finer(model, options, context);
+  EXPECT_GT(2 * finer.way().size(), 3 * usual.way().size());  // an image has not so many sizes
+  const std::uint64_t bytes = file_bytes(model) / 8;
+  // Refined, both end at about the same.
+  EXPECT_GT(finer.within(bytes).chosen.psnr_db, usual.within(bytes).chosen.psnr_db - 0.2);
+}
+
 TEST(Fit, WhatIsLostDecides) {
   const Model model = hills();
   Context context;

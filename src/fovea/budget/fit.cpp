@@ -492,7 +492,10 @@ OptionList describe(FitOptions& o) {
       {"search", "How choices are found: from all down, from little up, or by drawing all.",
        choice(o.search, {"prune", "grow", "exhaustive"}), ""},
       {"ladders", "Whether all meshes and all images go down together, or each for itself.",
-       choice(o.ladders, {"joint", "separate"}), ""}};
+       choice(o.ladders, {"joint", "separate"}), ""},
+      {"fineness",
+       "Rungs that ladders have for each usual one: more find a little more and take as many times as long.",
+       &o.fineness, "rungs", 1, 8}};
   ImageOutputOptions output;
   for (Option& option : describe(output)) {
     if (option.name != "texture-format") continue;

@@ -16,7 +16,8 @@ namespace {
 /// More meshes or images than this have one ladder together.
 constexpr std::size_t kMostLadders = 8;
 
-constexpr double kFewerImageBytes = 0.6;  // from rung to rung
+/// Of a rung, in parts of the usual one before it.
+constexpr double kFewerTriangles = 0.7, kFewerImageBytes = 0.6;
 constexpr double kFewestImageBytes = 0.008;
 
 /// Bytes of JSON that come at most when images get other sizes and formats (EXT_texture_webp).
@@ -31,11 +32,16 @@ std::uint64_t image_bytes_of(const Model& model) {
   return sum;
 }
 
+double fewer_of(double usual, const FitOptions& options) {
+  return std::pow(usual, 1.0 / static_cast<double>(options.fineness));
+}
+
 MeshLadderOptions mesh_options(const Model& model, const FitOptions& options) {
   std::size_t meshes = 0;
   for (const Mesh& mesh : model.meshes) meshes += mesh.surface.face_count() > 0;
   return {options.triangles, options.gives == FitGives::texels,
-          options.ladders == FitLadderSet::separate && meshes <= kMostLadders};
+          options.ladders == FitLadderSet::separate && meshes <= kMostLadders,
+          fewer_of(kFewerTriangles, options)};
 }
 
 }  // namespace
@@ -73,7 +79,9 @@ void FitLadders::make_image_ladders(const FitOptions& options) {
       ImageLadder& own = image_ladders_.emplace_back(ImageLadder{{i}, {}});
       // Of what is small anyway larger steps will do.
       const double share = static_cast<double>(rungs[i][0].bytes) / all;
-      const double fewer = std::pow(kFewerImageBytes, share > 1.0 / 8 ? 1 : share > 1.0 / 32 ? 2 : 3);
+      const double fewer = std::pow(fewer_of(kFewerImageBytes, options), share > 1.0 / 8    ? 1
+                                                                         : share > 1.0 / 32 ? 2
+                                                                                            : 3);
       double last = INFINITY;
       for (const TextureRung& rung : rungs[i]) {
         const auto bytes = static_cast<double>(rung.bytes);
@@ -95,9 +103,10 @@ void FitLadders::make_image_levels() {
   image_levels_.push_back(std::vector<std::size_t>(model_.images.size(), TextureLadders::kAsItIs));
   const std::uint64_t whole = image_bytes_of(model_);
   const std::uint64_t most = options_.most_bytes > 0 ? std::min(whole, options_.most_bytes) : whole;
+  const double fewer = fewer_of(kFewerImageBytes, options_);
   std::uint64_t last = whole;
-  for (double bytes = std::min(static_cast<double>(whole) * kFewerImageBytes, static_cast<double>(most));
-       bytes > kFewestImageBytes * static_cast<double>(whole); bytes *= kFewerImageBytes) {
+  for (double bytes = std::min(static_cast<double>(whole) * fewer, static_cast<double>(most));
+       bytes > kFewestImageBytes * static_cast<double>(whole); bytes *= fewer) {
     context_.advance_or_throw("textures", 1 - bytes / static_cast<double>(whole));
     std::vector<std::size_t> ways = textures_->within(static_cast<std::uint64_t>(bytes), false);
     const std::uint64_t taken = image_bytes({{}, ways});

@@ -11,7 +11,6 @@ namespace fovea {
 
 namespace {
 
-constexpr double kFewer = 0.7;  // from rung to rung
 constexpr double kFewest = 0.005;
 /// From so many triangles on pictures decide which go (simplify.h); up to there quadrics do as well.
 constexpr double kMostByPictures = 12000;
@@ -69,7 +68,7 @@ MeshLadders::MeshLadders(const Model& model, const MeshLadderOptions& options, c
   for (std::size_t l = 0; l < whole_.size(); ++l) {
     const auto all = static_cast<double>(whole_[l]);
     std::vector<MeshRung>& rungs = rungs_.emplace_back();
-    for (double wanted = share * all;; wanted = std::min(wanted * kFewer, wanted - 1)) {
+    for (double wanted = share * all;; wanted = std::min(wanted * options.fewer, wanted - 1)) {
       const auto left = static_cast<std::uint64_t>(std::max(wanted, 0.0));
       const std::uint64_t goes = whole_[l] - std::min(left, whole_[l]);
       const auto steps =

@@ -17,6 +17,7 @@ struct MeshLadderOptions {
   std::optional<std::int64_t> triangles;  ///< At most, over all meshes.
   bool whole = false;                     ///< They keep all of their triangles.
   bool separate = false;                  ///< A ladder for each mesh, instead of one for all.
+  double fewer = 0.7;                     ///< Triangles of a rung, of those of the one before.
 };
 
 /// A level of the meshes of one ladder.
@@ -26,7 +27,7 @@ struct MeshRung {
   std::uint64_t bytes = 0;  ///< As the file will hold them.
 };
 
-/// The meshes of a model in fewer and fewer triangles: each rung has 0.7 times those of the one before, down
+/// The meshes of a model in fewer and fewer triangles: each rung has a part of those of the one before, down
 /// to half a percent. They are simplified once, pictures deciding about the last 12,000 triangles
 /// (Metric::image), and each rung is encoded to know its bytes.
 class MeshLadders {
