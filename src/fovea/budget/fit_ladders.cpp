@@ -32,6 +32,7 @@ std::uint64_t image_bytes_of(const Model& model) {
   return sum;
 }
 
+/// From rung to rung on ladders as fine as asked.
 double fewer_of(double usual, const FitOptions& options) {
   return std::pow(usual, 1.0 / static_cast<double>(options.fineness));
 }
