@@ -497,7 +497,8 @@ OptionList describe(FitOptions& o) {
       {"ladders", "Whether all meshes and all images go down together, or each for itself.",
        choice(o.ladders, {"joint", "separate"}), ""},
       {"fineness",
-       "Rungs that ladders have for each usual one: more find a little more and take as many times as long.",
+       "Rungs that ladders have for each usual one: a curve of more points, which takes as many times as "
+       "long. What fits into a budget is tried more finely anyway.",
        &o.fineness, "rungs", 1, 8}};
   ImageOutputOptions output;
   for (Option& option : describe(output)) {

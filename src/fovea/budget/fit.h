@@ -41,7 +41,7 @@ struct FitOptions {
       FitLadderSet::joint;  ///< Always beyond eight meshes, or images, and for `exhaustive`.
   TextureOutput format = TextureOutput::keep;
   FitGives gives = FitGives::both;
-  std::int64_t fineness = 1;     ///< Rungs that ladders have for each usual one.
+  std::int64_t fineness = 1;     ///< Rungs of a ladder for each usual one: a way of more points.
   FileForm form;                 ///< As the file will be written.
   std::uint64_t most_bytes = 0;  ///< No larger budget will be asked for, which saves time; 0 for any.
 };
