@@ -1,15 +1,12 @@
 // What a simplification costs and gives by its options, as Markdown: defaults.mjs FOVEA FOLDER MODEL... simplifies each
 // model to 10 and 3 % in several variants, from the quickest to the slowest, and compares with the original. The means say
 // where --fast, the defaults and --best lie. Minutes for each model.
-import { execFileSync } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
-import { basename, join } from 'node:path';
+import { join } from 'node:path';
+import { modelName, reporter, usage } from './commands.mjs';
 
 const [fovea, folder, ...models] = process.argv.slice(2);
-if (!fovea || !folder || models.length === 0) {
-  console.error('usage: defaults.mjs FOVEA FOLDER MODEL...');
-  process.exit(2);
-}
+if (models.length === 0) usage('defaults.mjs FOVEA FOLDER MODEL...');
 mkdirSync(folder, { recursive: true });
 const variants = {
   'quadric (--fast)': ['--fast'],
@@ -21,8 +18,7 @@ const variants = {
   'saliency auto': ['--saliency', 'auto'],
   '--best': ['--best'],
 };
-const quiet = { maxBuffer: 1 << 26, stdio: ['ignore', 'pipe', 'ignore'] };
-const json = (...args) => JSON.parse(execFileSync(fovea, [...args, '--json'], quiet));
+const report = reporter(fovea);
 const out = join(folder, 'out.glb');
 const sums = Object.fromEntries(Object.keys(variants).map((name) => [name, { seconds: 0, base: 0, lit: 0, psnr: 0, msssim: 0, wins: 0 }]));
 let cells = 0;
@@ -31,8 +27,8 @@ for (const model of models) {
     ++cells;
     let normal;
     for (const [name, options] of Object.entries(variants)) {
-      const { seconds } = json('simplify', model, '-o', out, '--force', '--ratio', ratio, '--allow-miss', ...options);
-      const { base_color: base, lit } = json('compare', model, out, '--distance-samples', '0').results[0];
+      const { seconds } = report('simplify', model, '-o', out, '--force', '--ratio', ratio, '--allow-miss', ...options);
+      const { base_color: base, lit } = report('compare', model, out, '--distance-samples', '0').results[0];
       if (options.length === 0) normal = lit.flip_foreground;
       const sum = sums[name];
       sum.seconds += seconds;
@@ -41,7 +37,7 @@ for (const model of models) {
       sum.psnr += lit.psnr_foreground;
       sum.msssim += lit.ms_ssim_foreground;
       sum.wins += lit.flip_foreground < (normal ?? -1);
-      console.error(`${basename(model)} ${ratio} ${name}: ${seconds.toFixed(1)} s, FLIP ${lit.flip_foreground.toFixed(4)}, ${lit.psnr_foreground.toFixed(2)} dB`);
+      console.error(`${modelName(model)} ${ratio} ${name}: ${seconds.toFixed(1)} s, FLIP ${lit.flip_foreground.toFixed(4)}, ${lit.psnr_foreground.toFixed(2)} dB`);
     }
   }
 }

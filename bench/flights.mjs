@@ -1,15 +1,10 @@
 // Levels that follow a camera, as Markdown: flights.mjs [--only pictures|times] FOVEA MODEL... flies each model by every
 // rule and prints how its frames look, and then what they take. Minutes for each model.
-import { execFileSync } from 'node:child_process';
-import { basename } from 'node:path';
+import { modelName, reporter, takeOption, usage } from './commands.mjs';
 
-const words = process.argv.slice(2);
-const only = words[0] === '--only' ? words.splice(0, 2)[1] : undefined;
+const words = process.argv.slice(2), only = takeOption(words, '--only');
 const [fovea, ...models] = words;
-if (!fovea || models.length === 0 || ![undefined, 'pictures', 'times'].includes(only)) {
-  console.error('usage: flights.mjs [--only pictures|times] FOVEA MODEL...');
-  process.exit(2);
-}
+if (models.length === 0 || ![undefined, 'pictures', 'times'].includes(only)) usage('flights.mjs [--only pictures|times] FOVEA MODEL...');
 const clusters = (method, matching) => ['--select', 'clusters', '--clusters', '64', '--method', method, '--matching', matching];
 const rules = [
   ['uniform', ['--select', 'uniform']],
@@ -21,9 +16,8 @@ const rules = [
   ['clusters: k-means', clusters('kmeans', 'hold')],
 ];
 
-const fly = (model, words) =>
-  JSON.parse(execFileSync(fovea, ['fly', model, '--json', ...words], { maxBuffer: 1 << 26, stdio: ['ignore', 'pipe', 'ignore'] }));
-const name = (model) => basename(model).replace(/\.[^.]*$/, '');
+const report = reporter(fovea);
+const fly = (model, words) => report('fly', model, ...words);
 const db = (x) => (x === null ? 'same' : x.toFixed(2));
 
 function pictures() {
@@ -32,7 +26,7 @@ function pictures() {
   for (const model of models) {
     for (const [rule, words] of rules) {
       for (const r of fly(model, ['--device', 'cpu', ...words]).ratios) {
-        console.log(`| ${name(model)} | ${rule} | ${r.ratio} | ${r.triangles} | ${r.cracks} | ${db(r.psnr)} | ${db(r.psnr_worst)} ` +
+        console.log(`| ${modelName(model)} | ${rule} | ${r.ratio} | ${r.triangles} | ${r.cracks} | ${db(r.psnr)} | ${db(r.psnr_worst)} ` +
           `| ${r.ms_ssim.toFixed(4)} | ${r.ms_ssim_worst.toFixed(4)} | ${r.flip.toFixed(4)} | ${r.flip_worst.toFixed(4)} |`);
       }
     }
@@ -48,7 +42,7 @@ function times() {
       for (const r of flight.ratios) {
         const ms = (x) => (x === null ? '-' : x.toFixed(1));
         const by = (a, b) => (a === null || b === null ? '-' : (a / b).toFixed(2));
-        console.log(`| ${name(model)}${spread === '1' ? '' : `, a level every ${spread} frames`} | ${flight.device ?? '-'} | ${r.ratio} ` +
+        console.log(`| ${modelName(model)}${spread === '1' ? '' : `, a level every ${spread} frames`} | ${flight.device ?? '-'} | ${r.ratio} ` +
           `| ${ms(r.full_ms)} | ${ms(r.cpu_ms)} | ${ms(r.gpu_ms)} | ${by(r.full_ms, r.cpu_ms)} | ${by(r.full_ms, r.gpu_ms)} | ${by(r.cpu_ms, r.gpu_ms)} |`);
       }
     }

@@ -1,26 +1,22 @@
 // Pruning against all pairs, as Markdown: hulls.mjs [--fineness N] FOVEA FOLDER MODEL... fits each model with one ladder of triangles
 // and one of images, once by pruning and once by drawing all pairs, from the usual 24 views of 256 pixels, and says how far the way
 // is below the lower hull of all pairs at equal bytes. A minute for each; finer ladders have N rungs for each usual one, and N² times the pairs.
-import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
-import { basename, join } from 'node:path';
+import { join } from 'node:path';
+import { modelName, reporter, takeOption, usage } from './commands.mjs';
 
-const words = process.argv.slice(2), at = words.indexOf('--fineness');
-const fineness = at < 0 ? '1' : words.splice(at, 2)[1];
+const words = process.argv.slice(2), fineness = takeOption(words, '--fineness') ?? '1';
 const [fovea, folder, ...models] = words;
-if (!fovea || !folder || models.length === 0) {
-  console.error('usage: hulls.mjs [--fineness N] FOVEA FOLDER MODEL...');
-  process.exit(2);
-}
+if (models.length === 0) usage('hulls.mjs [--fineness N] FOVEA FOLDER MODEL...');
 mkdirSync(folder, { recursive: true });
-const quiet = { maxBuffer: 1 << 26, stdio: ['ignore', 'pipe', 'ignore'] };
+const report = reporter(fovea);
 const out = join(folder, 'fitted.glb'), curve = join(folder, 'curve.json');
 
 function way(model, search) {
   // A budget of a few bytes walks to the end.
-  const report = JSON.parse(execFileSync(fovea, ['fit', model, '-o', out, '--force', '--bytes', '1', '--allow-miss', '--views',
-    'rhombicuboctahedron', '--view-size', '256', '--search', search, '--fineness', fineness, '--curve', curve, '--json'], quiet));
-  return { ...JSON.parse(readFileSync(curve)), drawn: report.result.pictures_of, seconds: report.seconds };
+  const { result, seconds } = report('fit', model, '-o', out, '--force', '--bytes', '1', '--allow-miss', '--views',
+    'rhombicuboctahedron', '--view-size', '256', '--search', search, '--fineness', fineness, '--curve', curve);
+  return { ...JSON.parse(readFileSync(curve)), drawn: result.pictures_of, seconds };
 }
 
 /** The loss of a hull, which falls in bytes, at so many bytes: along the straight line between its points. */
@@ -42,6 +38,6 @@ for (const model of models) {
     const best = lossAt(all.path, p.bytes);
     return best > 0 ? Math.max(0, 10 * Math.log10(p.loss / best)) : 0;
   });
-  console.log(`| ${basename(model).replace(/\.[^.]*$/, '')} | ${all.all.length} | ${pruned.drawn} | ${(100 * pruned.drawn / all.all.length).toFixed(0)} % | ` +
+  console.log(`| ${modelName(model)} | ${all.all.length} | ${pruned.drawn} | ${(100 * pruned.drawn / all.all.length).toFixed(0)} % | ` +
     `${pruned.path.length} | ${Math.max(...gaps).toFixed(2)} | ${(gaps.reduce((a, b) => a + b, 0) / gaps.length).toFixed(2)} | ${pruned.seconds.toFixed(0)} | ${all.seconds.toFixed(0)} |`);
 }

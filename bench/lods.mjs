@@ -1,23 +1,19 @@
 // What LOD chains are, as Markdown: lods.mjs FOVEA FOLDER MODEL... makes chains of each model with default options and
 // prints their levels, and then what chains cost without images and pictures, by counts and by the screen.
-import { execFileSync } from 'node:child_process';
 import { rmSync } from 'node:fs';
-import { basename, join } from 'node:path';
+import { join } from 'node:path';
+import { modelName, reporter, usage } from './commands.mjs';
 
 const [fovea, folder, ...models] = process.argv.slice(2);
-if (!fovea || !folder || models.length === 0) {
-  console.error('usage: lods.mjs FOVEA FOLDER MODEL...');
-  process.exit(2);
-}
-const name = (model) => basename(model).replace(/\.[^.]*$/, '');
+if (models.length === 0) usage('lods.mjs FOVEA FOLDER MODEL...');
+const report = reporter(fovea);
 const bytes = (n) => (n < 1e6 ? `${(n / 1e3).toPrecision(3)} kB` : `${(n / 1e6).toPrecision(3)} MB`);
 const seconds = (s) => `${s < 10 ? s.toFixed(1) : s.toFixed(0)} s`;
 
 function lods(model, ...options) {
-  const out = join(folder, name(model));
+  const out = join(folder, modelName(model));
   rmSync(out, { recursive: true, force: true });
-  return JSON.parse(execFileSync(fovea, ['lods', model, '-o', out, '--json', ...options],
-    { maxBuffer: 1 << 26, stdio: ['ignore', 'pipe', 'ignore'] }));
+  return report('lods', model, '-o', out, ...options);
 }
 
 console.log('| model | level | triangles | geometry | images | file | error, of the diagonal | from distance | pixels high | FLIP, lit | time |');
@@ -28,7 +24,7 @@ for (const model of models) {
     const seen = l.pictures
       ? `${(100 * l.error.max_rel).toPrecision(2)} % | ${l.switch_distance.toPrecision(3)} | ${l.pictures.size} | ${l.pictures.lit.flip.toFixed(4)}`
       : ' | | | ';
-    console.log(`| ${i ? '' : name(model)} | ${i} | ${l.triangles.toLocaleString('en')} | ${bytes(l.bytes.geometry)} | ${bytes(l.bytes.images)} ` +
+    console.log(`| ${i ? '' : modelName(model)} | ${i} | ${l.triangles.toLocaleString('en')} | ${bytes(l.bytes.geometry)} | ${bytes(l.bytes.images)} ` +
       `| ${bytes(l.bytes.file)} | ${seen} | ${i ? '' : seconds(chain.seconds)} |`);
   });
 }
@@ -38,6 +34,6 @@ console.log('\n| model | without images and pictures | and by quadrics alone | b
 console.log('|---|--:|--:|---|--:|');
 for (const model of models) {
   const screen = lods(model, ...bare, '--coverage', '0.5,0.25,0.1');
-  console.log(`| ${name(model)} | ${seconds(lods(model, ...bare).seconds)} | ${seconds(lods(model, ...bare, '--metric', 'quadric').seconds)} ` +
+  console.log(`| ${modelName(model)} | ${seconds(lods(model, ...bare).seconds)} | ${seconds(lods(model, ...bare, '--metric', 'quadric').seconds)} ` +
     `| ${screen.levels.slice(1).map((l) => l.triangles.toLocaleString('en')).join(', ')} | ${seconds(screen.seconds)} |`);
 }
