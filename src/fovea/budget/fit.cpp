@@ -194,8 +194,11 @@ class BudgetFit::Finder {
       try_halves();
       try_weights();
     }
-    add_triangles();
-    choose_triangles();
+    // More triangles of the record can look no better, and yet do once pictures choose them.
+    const std::uint64_t most = counts(ladders_.model(add_triangles())).triangles;
+    const std::uint64_t best = counts(best_->model).triangles;
+    choose_triangles(best);
+    if (most > best) choose_triangles(most);
     refine_images();
   }
 
@@ -373,8 +376,8 @@ class BudgetFit::Finder {
     }
   }
 
-  /// As many triangles as there is room for.
-  void add_triangles() {
+  /// As many triangles as there is room for; also returned where they look no better.
+  FitChoice add_triangles() {
     const std::uint64_t taken = ladders_.file_bytes(best_->model);
     const double now = ladders_.mesh_bytes(best_->choice);
     double enough = now, most = now + static_cast<double>(bytes_ - taken);
@@ -396,6 +399,7 @@ class BudgetFit::Finder {
     }
     if (best != best_->choice && ladders_.loss(best).value < best_->loss.value)
       best_ = Best{best, ladders_.model(best), ladders_.loss(best)};
+    return best;
   }
 
   void take_if_better(Model model) {
@@ -404,11 +408,10 @@ class BudgetFit::Finder {
     if (loss.value < best_->loss.value) best_ = Best{best_->choice, std::move(model), loss};
   }
 
-  /// As many triangles, but for a few, simplified anew with pictures deciding about the last part of the way
+  /// So many triangles, but for a few, simplified anew with pictures deciding about the last part of the way
   /// (simplify.h).
-  void choose_triangles() {
+  void choose_triangles(std::uint64_t triangles) {
     if (options_.gives == FitGives::texels) return;
-    std::uint64_t triangles = counts(best_->model).triangles;
     if (triangles == counts(ladders_.original()).triangles) return;
     constexpr int kTries = 3;
     for (int i = 0; i < kTries && triangles > 0; ++i) {

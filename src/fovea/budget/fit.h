@@ -87,7 +87,7 @@ class BudgetFit {
 
   /// The best of at most so many bytes, or if there is none, the smallest. What was measured for one budget
   /// is known for the next: the walk itself costs nothing again. If cancelled, the best so far. Pictures of
-  /// about thirty models.
+  /// about thirty models with ladders of the usual fineness, of more with finer ones.
   FitResult within(std::uint64_t bytes);
 
   /// The smallest that is as like as this. Throws Error(usage) for a value that the metric does not have,

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMostLadders = 8;
 
 /// Of a rung, in parts of the usual one before it.
-constexpr double kFewerTriangles = 0.7, kFewerImageBytes = 0.6;
+constexpr double kFewerImageBytes = 0.6;
 constexpr double kFewestImageBytes = 0.008;
 
 /// Bytes of JSON that come at most when images get other sizes and formats (EXT_texture_webp).
@@ -40,9 +40,10 @@ double fewer_of(double usual, const FitOptions& options) {
 MeshLadderOptions mesh_options(const Model& model, const FitOptions& options) {
   std::size_t meshes = 0;
   for (const Mesh& mesh : model.meshes) meshes += mesh.surface.face_count() > 0;
-  return {options.triangles, options.gives == FitGives::texels,
-          options.ladders == FitLadderSet::separate && meshes <= kMostLadders,
-          fewer_of(kFewerTriangles, options)};
+  MeshLadderOptions result{options.triangles, options.gives == FitGives::texels,
+                           options.ladders == FitLadderSet::separate && meshes <= kMostLadders};
+  result.fewer = fewer_of(result.fewer, options);
+  return result;
 }
 
 }  // namespace
