@@ -35,6 +35,10 @@ endif()
 # errno or traps after arithmetic; without that, roots and choices become vector instructions.
 add_library(fovea_floating_point INTERFACE)
 target_compile_options(fovea_floating_point INTERFACE -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Where it packs statements that follow each other, GCC 12 drops the rounding of double -> float -> double.
+  target_compile_options(fovea_floating_point INTERFACE -fno-tree-slp-vectorize)
+endif()
 
 # fovea_module(name DEPENDS modules... LIBRARIES private libraries... HEADER_LIBRARIES libraries...
 #              HEADERS public headers...)

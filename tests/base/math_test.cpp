@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "fovea/base/random.h"
 
@@ -31,6 +32,18 @@ Mat4 random_affine(Random& random) {
   const double half = random.uniform(0, 3);
   const Quat q{axis.x * std::sin(half), axis.y * std::sin(half), axis.z * std::sin(half), std::cos(half)};
   return compose(random_point(random), q, {random.uniform(0.5, 2), random.uniform(0.5, 2), -1.5});
+}
+
+TEST(Vec3, SinglePrecisionIsThatOfEachNumber) {
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3d p = random_point(random), q = in_single_precision(p);
+    for (const auto& [whole, rounded] : {std::pair{p.x, q.x}, {p.y, q.y}, {p.z, q.z}}) {
+      const float single = static_cast<float>(whole);
+      EXPECT_EQ(rounded, static_cast<double>(single));
+      EXPECT_NE(rounded, whole);  // 53 random bits do not fit
+    }
+  }
 }
 
 TEST(Vec3, CrossIsRightHandedAndOrthogonal) {

@@ -89,6 +89,17 @@ TEST(View, TheSphereJustFitsThePicture) {
   }
 }
 
+TEST(View, LastBitsOfSinesDoNotShow) {
+  ViewOptions options;
+  options.set = ViewSet::fibonacci;
+  options.count = 50;
+  for (const View& view : make_views(options, {{0.1, 0.2, 0.3}, 0.7})) {
+    for (const Vec3d& v : {view.eye, view.right, view.up, view.back}) {
+      for (const double x : {v.x, v.y, v.z}) EXPECT_EQ(x, static_cast<double>(static_cast<float>(x)));
+    }
+  }
+}
+
 TEST(View, AxesAreARightHandedFrame) {
   ViewOptions options = views_of(ViewSet::octahedron);  // looks straight down and up as well
   for (const View& view : make_views(options, {{}, 1})) {

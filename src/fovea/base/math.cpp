@@ -39,16 +39,10 @@ Mat4 compose(Vec3d t, Quat q, Vec3d s) {
   return r;
 }
 
-namespace {
-
-// Out of sight of the optimiser.
-__attribute__((noinline)) float narrowed(double x) { return static_cast<float>(x); }
-
-}  // namespace
+double in_single_precision(double x) { return static_cast<double>(static_cast<float>(x)); }
 
 Vec3d in_single_precision(Vec3d p) {
-  return {static_cast<double>(narrowed(p.x)), static_cast<double>(narrowed(p.y)),
-          static_cast<double>(narrowed(p.z))};
+  return {in_single_precision(p.x), in_single_precision(p.y), in_single_precision(p.z)};
 }
 
 Vec3d transform_point(const Mat4& a, Vec3d p) {

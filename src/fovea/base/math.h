@@ -41,8 +41,9 @@ using Vec2d = Vec2<double>;
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 
-/// What is left of p in single precision. Not `Vec3d(Vec3f(p))`: where GCC 12 works on two components at
-/// once it leaves out both conversions.
+/// What is left of a number in single precision, also in programs that are built without
+/// -fno-tree-slp-vectorize, where GCC 12 may drop `Vec3d(Vec3f(p))`.
+double in_single_precision(double x);
 Vec3d in_single_precision(Vec3d p);
 
 template <class T>

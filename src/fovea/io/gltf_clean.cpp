@@ -136,7 +136,7 @@ struct Influences {
     // The specification's validator allows 2e-7 for each weight that is not 0; half of it is kept for
     // readers that add up in floats.
     if (std::abs(total - 1) <= 1e-7 * static_cast<double>(used)) return false;
-    for (double& w : weights) w = static_cast<double>(static_cast<float>(w / total));
+    for (double& w : weights) w = in_single_precision(w / total);
     *std::max_element(weights.begin(), weights.end()) += 1 - sum();
     return std::abs(total - 1) > 1e-3;
   }

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Numbers of a view are rounded to floats, so that the last bits of the C library's sines do not show.
-double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
-Vec3d rounded(Vec3d v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
-
 /// All (±x, ±y, ±z), the first sign changing slowest; a zero has one sign.
 void add_signs(std::vector<Vec3d>& out, Vec3d v) {
   const auto signs = [](double x) { return x == 0 ? std::vector<double>{0.0} : std::vector<double>{x, -x}; };
@@ -95,30 +91,31 @@ std::vector<Vec3d> directions(const ViewOptions& options) {
 }
 
 View view_onto(const Sphere& sphere, Vec3d direction, double fov_deg, double margin) {
+  // Numbers of a view are rounded, so that the last bits of the C library's sines do not show.
   View view;
-  view.back = rounded(direction);
+  view.back = in_single_precision(direction);
   // Looked at from above or below, the model's front (+z) is at the bottom of the picture or its top.
   const Vec3d upright =
       std::abs(direction.y) > 0.999 ? Vec3d{0, 0, direction.y > 0 ? -1.0 : 1.0} : Vec3d{0, 1, 0};
-  view.right = rounded(normalized(cross(upright, direction)));
-  view.up = rounded(cross(direction, normalized(cross(upright, direction))));
+  view.right = in_single_precision(normalized(cross(upright, direction)));
+  view.up = in_single_precision(cross(direction, normalized(cross(upright, direction))));
   const double radius = sphere.radius > 0 ? sphere.radius * (1 + margin) : 1;
   view.perspective = fov_deg > 0;
   const double half = fov_deg * kPi / 360;
   const double distance = view.perspective ? radius / std::sin(half) : 2 * radius;
-  view.half_height = rounded(view.perspective ? std::tan(half) : radius);
-  view.eye = rounded(sphere.center + direction * distance);
+  view.half_height = in_single_precision(view.perspective ? std::tan(half) : radius);
+  view.eye = in_single_precision(sphere.center + direction * distance);
   // In front of the sphere, or of the eye if the sphere reaches behind it.
-  view.near = rounded(std::max(distance - 1.01 * radius, 1e-3 * radius));
+  view.near = in_single_precision(std::max(distance - 1.01 * radius, 1e-3 * radius));
   return view;
 }
 
 View view_from(Vec3d eye, Vec3d target, double fov_deg) {
   const Vec3d away = eye - target;
   View view = view_onto({target, length(away)}, normalized(away), fov_deg, 0);
-  view.eye = rounded(eye);
-  if (!view.perspective) view.half_height = rounded(0.5 * length(away));
-  view.near = rounded(1e-3 * length(away));
+  view.eye = in_single_precision(eye);
+  if (!view.perspective) view.half_height = in_single_precision(0.5 * length(away));
+  view.near = in_single_precision(1e-3 * length(away));
   return view;
 }
 
