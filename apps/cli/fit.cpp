@@ -28,13 +28,6 @@ void check_curve_output(const std::filesystem::path& path, bool force) {
   check_place(path, force);
 }
 
-/// An output of another kind than models.
-void write_text(const std::string& path, const std::string& text, bool force) {
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
-  const OutputFile file{"", {bytes.begin(), bytes.end()}};
-  write_files(path, {&file, 1}, force);
-}
-
 class Fit : public Verb {
  public:
   VerbText text() const override {

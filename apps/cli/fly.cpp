@@ -246,10 +246,7 @@ class Fly : public Verb {
   void write(const FlightReport& report, Session& session) const {
     session.report["outputs"] = Json::array();
     if (!output_.empty()) {
-      const std::string text = csv(report.frames);
-      const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
-      const OutputFile file{"", {bytes.begin(), bytes.end()}};
-      write_files(output_, {&file, 1}, force_);
+      write_text(output_, csv(report.frames), force_);
       session.report["outputs"].push_back(file_json(output_));
     }
     if (strip_.empty()) return;

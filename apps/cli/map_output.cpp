@@ -48,11 +48,4 @@ std::vector<Model> read_poses(Session& session, const Model& first, std::span<co
   return poses;
 }
 
-ViewOptions views_around() {
-  ViewOptions views;
-  views.set = ViewSet::orbit;
-  views.count = 6;
-  return views;
-}
-
 }  // namespace fovea::cli

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "fovea/io/read.h"
-#include "fovea/render/view.h"
 #include "session.h"
 
 namespace fovea::cli {
@@ -26,8 +25,5 @@ void check_attribute_output(const std::filesystem::path& path, bool force);
 /// not the model in another pose.
 std::vector<Model> read_poses(Session& session, const Model& first, std::span<const std::string> paths,
                               const ReadOptions& options);
-
-/// Six views from around, for a sheet.
-ViewOptions views_around();
 
 }  // namespace fovea::cli

@@ -69,14 +69,8 @@ class Saliency : public Verb {
           "lists them.",
           &map_, "name"},
          describe_force(force_)});
-    arguments.add("Picture", describe(view_options_));
-    arguments.add("Picture", {describe_view_size(size_), describe_columns(columns_)});
+    add_sheet(arguments, sheet_, [&] { return output_.empty() || kind() == OutputKind::picture; });
     arguments.add("Limits", describe(read_options_));
-    need_views(arguments, view_options_);
-    arguments.need({{"views", "view-count", "elevation", "fov", "margin", "view-size", "columns"},
-                    "a picture as output",
-                    [&] { return output_.empty() || kind() == OutputKind::picture; },
-                    "name it .png, .jpg or .webp"});
   }
 
   int run(Session& session) override {
@@ -230,13 +224,9 @@ class Saliency : public Verb {
   Image8 picture(const Model& model, const SaliencyMap& map, Context& context) const {
     RenderOptions options;
     options.pass = Pass::field;
-    options.width = options.height = size_;
     const std::vector<VertexField> fields = scaled(map.fields);
-    const Model heat = heat_map(model, fields);  // has no textures to decode
-    const Pose pose = pose_of(heat, options_.pose);
-    const RenderScene scene = make_render_scene(heat, pose, context);
-    const std::vector<View> views = views_of(view_options_, heat, pose, scene.sphere);
-    return draw_sheet(scene, views, columns_, options, context, fields);
+    // A heat map has no textures to decode.
+    return draw_sheet(heat_map(model, fields), options_.pose, sheet_, options, context, fields);
   }
 
   Json statistics_json(const Model& model, const ModelSaliency& found, Session& session) const {
@@ -284,10 +274,8 @@ class Saliency : public Verb {
   std::string map_ = kWhole;
   OutputKind kind_ = OutputKind::by_extension;
   bool force_ = false;
-  std::int64_t size_ = 384;
-  std::int64_t columns_ = 0;
+  SheetOptions sheet_;
   SaliencyOptions options_;
-  ViewOptions view_options_ = views_around();
   ReadOptions read_options_;
 };
 

@@ -14,7 +14,6 @@
 #include "fovea/io/image_file.h"
 #include "fovea/io/write.h"
 #include "fovea/render/face_map.h"
-#include "fovea/render/render.h"
 #include "fovea/saliency/model_saliency.h"
 #include "fovea/surface/scene_surface.h"
 #include "input.h"
@@ -122,14 +121,8 @@ class Segment : public Verb {
           choice(kind_, {"extension", "colors", "attribute", "ids", "properties", "local", "picture"}), ""},
          describe_force(force_)});
     arguments.add("Saliency", describe(saliency_options_));
-    arguments.add("Picture", describe(view_options_));
-    arguments.add("Picture", {describe_view_size(size_), describe_columns(columns_)});
+    add_sheet(arguments, sheet_, [&] { return output_.empty() || kind() == SegmentOutput::picture; });
     arguments.add("Limits", describe(read_options_));
-    need_views(arguments, view_options_);
-    arguments.need({{"views", "view-count", "elevation", "fov", "margin", "view-size", "columns"},
-                    "a picture as output",
-                    [&] { return output_.empty() || kind() == SegmentOutput::picture; },
-                    "name it .png, .jpg or .webp"});
     arguments.need({{"key-poses"},
                     "all of the animations",
                     [&] { return !saliency_options_.pose.animation; },
@@ -207,9 +200,12 @@ class Segment : public Verb {
         write_field(output_, field_in_source_order(model, local), "local-saliency", force_);
         break;
       }
-      case SegmentOutput::properties: write_properties(properties); break;
+      case SegmentOutput::properties:
+        write_text(output_, dump({{"clusters", to_json(properties)}}) + "\n", force_);
+        break;
       case SegmentOutput::picture:
-        write_image(picture(face_map(model, numbers, cluster_colors(scene, clusters)), session.context),
+        write_image(draw_sheet(face_map(model, numbers, cluster_colors(scene, clusters)),
+                               saliency_options_.pose, sheet_, {}, session.context, {}),
                     output_, force_);
         break;
       case SegmentOutput::attribute: return write(with_face_attribute(model, numbers, kAttribute), session);
@@ -226,22 +222,6 @@ class Segment : public Verb {
     options.force = force_;
     const auto files = write_model(made, output_, options, session.context);
     session.report["outputs"].push_back(file_json(output_, measure_output(files, made)));
-  }
-
-  void write_properties(const std::vector<ClusterProperties>& properties) const {
-    const std::string text = dump({{"clusters", to_json(properties)}}) + "\n";
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
-    const OutputFile file{"", {bytes.begin(), bytes.end()}};
-    write_files(output_, {&file, 1}, force_);
-  }
-
-  Image8 picture(const Model& colored, Context& context) const {
-    RenderOptions options;
-    options.width = options.height = size_;
-    const Pose pose = pose_of(colored, saliency_options_.pose);
-    const RenderScene scene = make_render_scene(colored, pose, context);
-    return draw_sheet(scene, views_of(view_options_, colored, pose, scene.sphere), columns_, options, context,
-                      {});
   }
 
   void tell(Session& session, const Clusters& clusters,
@@ -277,11 +257,9 @@ class Segment : public Verb {
   std::string output_;
   SegmentOutput kind_ = SegmentOutput::by_extension;
   bool force_ = false;
-  std::int64_t size_ = 384;
-  std::int64_t columns_ = 0;
+  SheetOptions sheet_;
   ClusterOptions options_;
   SaliencyOptions saliency_options_ = over_poses();
-  ViewOptions view_options_ = views_around();
   ReadOptions read_options_;
 };
 

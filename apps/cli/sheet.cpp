@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "fovea/base/error.h"
+#include "shared_options.h"
 
 namespace fovea::cli {
 
@@ -41,6 +44,23 @@ void put(const Image8& picture, std::size_t place, Image8& sheet) {
 
 }  // namespace
 
+ViewOptions views_around() {
+  ViewOptions views;
+  views.set = ViewSet::orbit;
+  views.count = 6;
+  return views;
+}
+
+void add_sheet(Arguments& arguments, SheetOptions& sheet, std::function<bool()> is_picture) {
+  arguments.add("Picture", describe(sheet.views));
+  arguments.add("Picture", {describe_view_size(sheet.size), describe_columns(sheet.columns)});
+  need_views(arguments, sheet.views);
+  arguments.need({{"views", "view-count", "elevation", "fov", "margin", "view-size", "columns"},
+                  "a picture as output",
+                  std::move(is_picture),
+                  "name it .png, .jpg or .webp"});
+}
+
 Image8 draw_sheet(const RenderScene& scene, std::span<const View> views, std::int64_t columns,
                   const RenderOptions& options, Context& context, std::span<const VertexField> fields) {
   Image8 sheet = empty_sheet(views.size(), columns, options);
@@ -52,6 +72,15 @@ Image8 draw_sheet(const RenderScene& scene, std::span<const View> views, std::in
     for (std::size_t k = 0; k < pictures.size(); ++k) put(pictures[k].color, i + k, sheet);
   }
   return sheet;
+}
+
+Image8 draw_sheet(const Model& model, const PoseOptions& pose_options, const SheetOptions& sheet,
+                  RenderOptions options, Context& context, std::span<const VertexField> fields) {
+  options.width = options.height = sheet.size;
+  const Pose pose = pose_of(model, pose_options);
+  const RenderScene scene = make_render_scene(model, pose, context);
+  const std::vector<View> views = views_of(sheet.views, model, pose, scene.sphere);
+  return draw_sheet(scene, views, sheet.columns, options, context, fields);
 }
 
 Image8 join_sheet(std::span<const Image8> pictures, std::int64_t columns) {

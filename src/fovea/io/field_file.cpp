@@ -304,9 +304,7 @@ void write_field(const std::filesystem::path& path, std::span<const float> value
   fmt::format_to(std::back_inserter(text), "{}\n", name);
   // The shortest digits that read back as the same float.
   for (const float x : values) fmt::format_to(std::back_inserter(text), "{}\n", x);
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(text.data(), text.size()));
-  const OutputFile file{"", {bytes.begin(), bytes.end()}};
-  write_files(path, {&file, 1}, force);
+  write_text(path, {text.data(), text.size()}, force);
 }
 
 std::vector<float> field_in_source_order(const Model& model, std::span<const VertexField> fields) {

@@ -240,6 +240,12 @@ void write_files(const fs::path& path, std::span<const OutputFile> files, bool f
   pending.rename_all();
 }
 
+void write_text(const fs::path& path, std::string_view text, bool force) {
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+  const OutputFile file{"", {bytes.begin(), bytes.end()}};
+  write_files(path, {&file, 1}, force);
+}
+
 std::vector<fs::path> write_model(const Model& model, const fs::path& path, const WriteOptions& options,
                                   Context& context) {
   check_output(path, options);

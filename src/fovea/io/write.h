@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fovea/base/context.h"
@@ -61,6 +62,8 @@ void check_place(const std::filesystem::path& path, bool force);
 /// Nothing new is left behind on failure. Throws Error(output), Error(usage) for an existing file without
 /// `force`.
 void write_files(const std::filesystem::path& path, std::span<const OutputFile> files, bool force);
+/// The same of one file of text.
+void write_text(const std::filesystem::path& path, std::string_view text, bool force);
 
 /// Bytes that a model's file holds, by kind.
 struct ByteCounts {
