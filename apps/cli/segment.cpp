@@ -131,6 +131,10 @@ class Segment : public Verb {
 
   int run(Session& session) override {
     check_request();
+    if (saliency_options_.pose.animation) {
+      saliency_options_.key_poses = 1;  // that of the animation
+      session.report["options"]["key-poses"] = 1;
+    }
     const Input first = read_first(session);
     const Model& model = first.model;
     const std::vector<Model> poses = read_poses(session, model, std::span(inputs_).subspan(1), read_options_);
@@ -147,7 +151,6 @@ class Segment : public Verb {
     kind_ = kind();
     check_output(output_, "clusters.glb", inputs_, force_,
                  [&](const auto& path) { output_check()(path, force_); });
-    if (saliency_options_.pose.animation) saliency_options_.key_poses = 1;
   }
 
   SegmentOutput kind() const {

@@ -182,6 +182,7 @@ TEST_F(SegmentVerb, LooksAtThePosesOfAnAnimation) {
       segment({out("arm.glb"), "-o", out("b.glb"), "--animation", "0", "--time", "0.5", "--json"});
   ASSERT_EQ(moment.code, 0) << moment.err;
   EXPECT_EQ(moment.json()["poses"], nlohmann::json::array({"animation 0 at 0.50 s"}));
+  EXPECT_EQ(moment.json()["options"]["key-poses"], 1);
   const Outcome both = segment({out("arm.glb"), "-o", out("c.glb"), "--animation", "0", "--key-poses", "4"});
   EXPECT_EQ(both.code, 2);
   EXPECT_THAT(both.err, HasSubstr("leave out --animation, or --key-poses"));
