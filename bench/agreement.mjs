@@ -1,6 +1,6 @@
 // Whether Fovea's judge and another one rank the same, as Markdown for docs/judging.md: agreement.mjs FOVEA EVALUATOR FOLDER
 // MODEL... takes each model to 50, 25, 10, 5 and 2 % of its triangles, and to 10 % in three other ways, and has all held
-// against the original by both. EVALUATOR is called as in commands.mjs. A minute for each model.
+// against the original by both. EVALUATOR is called as in commands.mjs. Minutes for each model.
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { evaluated, modelName, reporter, usage } from './commands.mjs';
