@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -324,6 +326,32 @@ TEST(ShrinkTextures, PicturesDecideWhetherAllSidesAreHalvedAlike) {
   EXPECT_EQ(by_pictures.images[0].after.width, by_pictures.images[1].after.width);
   options.lost = [](const Model&) { return 1.0; };  // of what loses as much estimates are kept
   EXPECT_EQ(shrink(model, options).model.images, by_estimate.model.images);
+}
+
+TEST(ShrinkTextures, PicturesDecideWhetherAllFilesAreAsNear) {
+  Model model = detailed_and_flat();
+  Image8 faint = picture(128, 128);
+  for (std::uint8_t& x : faint.pixels) x = static_cast<std::uint8_t>(120 + x / 8);
+  model.images[1] = png(faint);
+  ShrinkOptions options;
+  options.output.format = TextureOutput::jpeg;
+  options.max_bytes = 20000;
+  // How much nearer one file is to its image than the other, in dB.
+  const auto apart = [&](const Model& made) {
+    std::array<double, 2> psnr{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Image8 file = decode_image(made.images[i].bytes);
+      const Image8 plain = resized(decode_image(model.images[i].bytes), file.width, file.height, {},
+                                   Wrap::repeat, Wrap::repeat, {});
+      psnr[i] = encoding_psnr(plain, file, Content::colors);
+    }
+    return std::abs(psnr[0] - psnr[1]);
+  };
+  EXPECT_GT(apart(shrink(model, options).model), 3);
+  options.lost = [&](const Model& tried) {
+    return apart(tried) + 1000.0 / decode_image(tried.images[0].bytes).width;
+  };
+  EXPECT_LT(apart(shrink(model, options).model), 1);
 }
 
 TEST(ShrinkTextures, PicturesDecideWhatColorsAreWorth) {

@@ -26,6 +26,9 @@ constexpr std::size_t kFiner = 3;
 constexpr int kLeastJpegQuality = 78;
 /// A higher quality gains nothing where a file loses hardly more than the size alone does.
 constexpr double kNearlyAll = 1.05;
+/// A large image is both filled and as it is if the way that did worse with small ones loses so many times
+/// less: halves keep what pictures showed of the texels between charts, and filled ones do not.
+constexpr double kClearlyMore = 1.25;
 /// Texels up to which images are both filled and as they are; up to which WebP is always tried without loss;
 /// and up to which many qualities are tried.
 constexpr std::int64_t kSmall = 1 << 16, kMiddle = 1 << 18, kLarge = 1 << 20;
@@ -79,13 +82,19 @@ class Ways {
   /// Whether one was added.
   bool add_size(int width, int height) {
     const std::size_t before = ways_.size();
-    const bool is_small = std::int64_t{width} * height <= kSmall;
-    for (const bool fill : {true, false}) {
-      if (fill && !may_fill(width)) continue;
-      if (!is_small && may_fill(width) && fill != prefers_filled()) continue;
-      add_kind(width, height, fill);
+    if (std::int64_t{width} * height <= kSmall) {
+      for (const bool fill : {true, false})
+        if (!fill || may_fill(width)) add_kind(filled_or_not(width, height, fill));
+      largest_small_ = {before, ways_.size() - before};
+      return ways_.size() > before;
     }
-    if (is_small) largest_small_ = {before, ways_.size() - before};
+    const bool prefers = may_fill(width) && prefers_filled();
+    const Kind preferred = filled_or_not(width, height, prefers);
+    add_kind(preferred);
+    if (may_fill(width)) {
+      const Kind other = filled_or_not(width, height, !prefers);
+      if (kClearlyMore * other.least_loss < preferred.least_loss) add_kind(other);
+    }
     return ways_.size() > before;
   }
 
@@ -159,14 +168,26 @@ class Ways {
     return resized(quarter, width, height, limits_.use, context_);
   }
 
-  void add_kind(int width, int height, bool fill) {
-    const Image8 picture = sized(width, height, fill);
+  /// An image to encode, and what pictures lose by its size alone.
+  struct Kind {
+    Image8 picture;
+    bool fill = false;
+    double least_loss = 0;
+  };
+
+  Kind filled_or_not(int width, int height, bool fill) {
+    Kind kind{sized(width, height, fill), fill};
+    const std::vector<double> losses = loss_.of(kind.picture, context_);
+    kind.least_loss = std::accumulate(losses.begin(), losses.end(), 0.0);
+    return kind;
+  }
+
+  void add_kind(const Kind& kind) {
+    const auto& [picture, fill, least] = kind;
     if (limits_.format == TextureFormat::png) {
       add(picture, {TextureFormat::png, 0, fill});
       return;
     }
-    const std::vector<double> losses = loss_.of(picture, context_);
-    const double least = std::accumulate(losses.begin(), losses.end(), 0.0);
     add_qualities(picture, {limits_.format, kLeastQuality, fill}, least);
     if (limits_.format != TextureFormat::webp) return;
     if (may_be_without_loss(texels(picture))) add(picture, {TextureFormat::webp, 0, fill});

@@ -44,9 +44,10 @@ Image8 resized_for_way(const Image8& image, int width, int height, const ImageUs
 /// BoomBox's colours than at 1/2), or of PNG, which has no quality, at four sizes for each half, at several
 /// qualities, to see what that takes and what pictures lose: as it is, and filled between the triangles that
 /// show it, `faces` (all of them, or none if not all are known); large ones only in that of the two ways that
-/// did better with a small one. WebP without loss, too (of more than 512² texels up to 1024² only if the file
-/// may take a third of a byte for each), and if it has no alpha as JPEG. There is always one way at least,
-/// the smallest image of the lowest quality, though it may take more bytes than it should.
+/// did better with a small one, unless the other loses clearly less by its size. WebP without loss, too (of
+/// more than 512² texels up to 1024² only if the file may take a third of a byte for each), and if it has no
+/// alpha as JPEG. There is always one way at least, the smallest image of the lowest quality, though it may
+/// take more bytes than it should.
 ///
 /// Small sizes first, and none larger than the first of which all files take too much: the time goes with
 /// `most_bytes`. Throws Error(cancelled).

@@ -21,6 +21,10 @@ constexpr int kRounds = 6;
 /// What is left is spent on a file if it is so much of that.
 constexpr double kLeastFill = 0.005;
 
+/// How near images that are all stored as near may be: from so many dB on, in so many steps of so many.
+constexpr double kLeastAlikeDb = 24, kAlikeStepDb = 0.25;
+constexpr int kAlikeSteps = 128;
+
 /// How much of a squared difference lit pictures tell. With half as much for all but colours, as
 /// `loss_weight` has it, colours took too many bytes: DamagedHelmet at a quarter of its sides was 0.4 dB
 /// worse with light.
@@ -250,6 +254,58 @@ std::vector<WantedImage> TextureBudget::choose(double bytes, bool refine) {
 std::vector<WantedImage> TextureBudget::choose_halved(double bytes, int halvings, bool refine) {
   const std::vector<std::size_t> ways = choose_halved_ways(bytes, halvings, refine);
   return ways.empty() ? std::vector<WantedImage>{} : wanted(ways);
+}
+
+std::vector<ImageOutput> TextureBudget::encoded_alike(std::span<const Image8> pictures,
+                                                      double psnr_db) const {
+  ImageOutputOptions options = options_;
+  options.psnr_db = psnr_db;
+  std::vector<std::optional<ImageOutput>> tried(pictures.size());
+  parallel_for_or_throw(context_, pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const ImageChange::State& file = files_[candidates_[c].image];
+      tried[c] = encode_output(pictures[c], uses_[candidates_[c].image], file.mime_type, file.bytes, options);
+    }
+  });
+  std::vector<ImageOutput> outputs;
+  for (std::optional<ImageOutput>& output : tried) {
+    if (!output) return {};
+    outputs.push_back(std::move(*output));
+  }
+  return outputs;
+}
+
+std::vector<WantedImage> TextureBudget::choose_alike(double bytes, int halvings) const {
+  std::vector<Image8> pictures;
+  for (const Candidate& candidate : candidates_) {
+    const auto same = [&](const ImageWay& way) { return is_halved(candidate, way, halvings); };
+    const auto way = std::ranges::find_if(candidate.ways, same);
+    if (way == candidate.ways.end()) return {};
+    const ImageUse& use = uses_[candidate.image];
+    pictures.push_back(
+        resized_for_way(without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use),
+                        way->width, way->height, use, context_));
+  }
+  std::vector<ImageOutput> best;
+  int fits = 0, too_much = kAlikeSteps;
+  while (too_much - fits > 1) {
+    const int middle = fits + (too_much - fits) / 2;
+    std::vector<ImageOutput> outputs = encoded_alike(pictures, kLeastAlikeDb + middle * kAlikeStepDb);
+    double sum = kept_bytes_;
+    for (const ImageOutput& output : outputs) sum += static_cast<double>(output.texture.bytes.size());
+    const bool is_good = !outputs.empty() && sum <= bytes;
+    (is_good ? fits : too_much) = middle;
+    if (is_good) best = std::move(outputs);
+  }
+  if (best.empty()) return {};
+  std::vector<WantedImage> images = limits_;
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    WantedImage& image = images[candidates_[c].image];
+    image = {pictures[c].width, pictures[c].height,
+             image.psnr_db,     false,
+             SizeReason::bytes, FileChoice{best[c].format, best[c].texture.quality, false}};
+  }
+  return images;
 }
 
 const TextureBudget::Candidate* TextureBudget::find(std::size_t image) const {

@@ -50,6 +50,11 @@ class TextureBudget {
   std::vector<WantedImage> choose_halved(double bytes, int halvings, bool refine);
   std::vector<std::size_t> choose_halved_ways(double bytes, int halvings, bool refine);
 
+  /// Those halved so many times by Lanczos alone and all encoded as near (`encoding_psnr`), as near as the
+  /// bytes allow: what somebody would do who measures nothing. Empty as above, or if none fit. Encodes all
+  /// images seven times.
+  std::vector<WantedImage> choose_alike(double bytes, int halvings) const;
+
   static constexpr std::size_t kNoWay = static_cast<std::size_t>(-1);
   /// Makes what is lost of an image count so many times.
   void set_weight(std::size_t image, double weight);
@@ -93,6 +98,8 @@ class TextureBudget {
   bool is_halved(const Candidate& candidate, const ImageWay& way, int times) const;
   std::vector<std::size_t> ways_of(const Numbers& numbers) const;
   std::vector<WantedImage> wanted(std::span<const std::size_t> ways) const;
+  /// Each encoded so near, as far as its file before was larger; empty if some cannot be.
+  std::vector<ImageOutput> encoded_alike(std::span<const Image8> pictures, double psnr_db) const;
   const Candidate* find(std::size_t image) const;
   double area(const Candidate& candidate) const { return candidate.area * candidate.weight; }
 

@@ -103,6 +103,7 @@ Shrunk resized_within_bytes(const PreparedModel& prepared, std::span<const Wante
   }
   budget.set_color_weight(weight);
   if (halvings || weight != 1) choice.consider(chosen(true));
+  if (nearest) choice.consider(budget.choose_alike(most, *nearest));
   return choice.take();
 }
 
