@@ -143,18 +143,38 @@ class BudgetFit::Finder {
             psnr(best.loss.squared)};
   }
 
-  /// Points from the largest down, the last within the bytes if there is one.
+  /// Points from the original down, the last within the bytes if there is one.
   std::vector<JointPoint> walk(std::uint64_t bytes) {
-    const JointLadders joint = ladders_.joint();
+    JointLadders joint = ladders_.joint();
     if (options_.search == FitSearch::exhaustive) {
       if (all_.empty()) all_ = exhaust(joint);
       return lower_hull(all_);
     }
-    if (options_.search == FitSearch::prune)
-      return prune(joint, bytes, options_.fineness > 1 ? kAheadIfFiner : kAhead);
+    if (options_.search == FitSearch::prune) {
+      std::vector<JointPoint> drawn;
+      joint.loss = [&, loss = std::move(joint.loss)](const Rungs& rungs) {
+        drawn.push_back({rungs, joint.bytes(rungs), loss(rungs)});
+        return drawn.back().loss;
+      };
+      const std::vector<JointPoint> path =
+          prune(joint, bytes, options_.fineness > 1 ? kAheadIfFiner : kAhead);
+      return best_of(std::move(drawn), path, bytes);
+    }
     std::vector<JointPoint> path = grow(joint, bytes > 0 ? bytes : std::numeric_limits<std::uint64_t>::max());
     std::ranges::reverse(path);
     return path;
+  }
+
+  /// The hull of all that a path came by, between its ends; within the bytes, what loses least.
+  static std::vector<JointPoint> best_of(std::vector<JointPoint> drawn, const std::vector<JointPoint>& path,
+                                         std::uint64_t bytes) {
+    JointPoint end = path.back();
+    for (const JointPoint& point : drawn)
+      if (point.bytes <= bytes && point.loss < end.loss) end = point;
+    std::erase_if(drawn, [&](const JointPoint& point) { return point.bytes < end.bytes; });
+    std::vector<JointPoint> best = lower_hull(std::move(drawn));
+    if (best.front().rungs != path.front().rungs) best.insert(best.begin(), path.front());
+    return best;
   }
 
   /// The way down to half the bytes, a quarter, and so on, until its end is no longer like.

@@ -60,10 +60,11 @@ struct FitPoint {
 struct FitResult {
   Model model;
   FitPoint chosen;
-  bool reached = true;         ///< Whether it keeps to the bytes, or is as like as asked.
-  bool cancelled = false;      ///< Whether it is only the best that was known when it was.
-  std::vector<FitPoint> path;  ///< As the ladders were walked; of `exhaustive` the lower hull of all.
-  std::size_t pictures = 0;    ///< Models drawn so far.
+  bool reached = true;     ///< Whether it keeps to the bytes, or is as like as asked.
+  bool cancelled = false;  ///< Whether it is only the best that was known when it was.
+  /// From the original to the end of the walk the lower hull of what was drawn; all steps if it grew.
+  std::vector<FitPoint> path;
+  std::size_t pictures = 0;  ///< Models drawn so far.
 };
 
 /// Spends one budget of bytes on the triangles and the texels of a model so that pictures lose least.
@@ -94,7 +95,7 @@ class BudgetFit {
   /// Error(cancelled).
   FitResult like(FitMetric metric, double value);
 
-  /// The whole way from the original down.
+  /// The whole way from the original down, as `FitResult::path`.
   std::vector<FitPoint> way();
   /// All pairs of an exhaustive search; of others none.
   std::vector<FitPoint> all();
