@@ -10,4 +10,8 @@ namespace fovea::test {
 /// a PNG.
 Model textured(TriMesh mesh, int images);
 
+/// A plane of 162 triangles, each with a small chart of its own, of grey noise, in an image whose texels
+/// between the charts are squares of black and white, an eightieth of its side.
+Model small_charts(int side);
+
 }  // namespace fovea::test

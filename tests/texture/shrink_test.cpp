@@ -286,6 +286,21 @@ TEST(ShrinkTextures, BytesObeyTheOtherLimits) {
   EXPECT_LE(found.bytes, 20000u);
 }
 
+TEST(ShrinkTextures, HalvesKeepWhatPicturesShowBetweenCharts) {
+  ShrinkOptions options;
+  options.scale = 0.5;
+  options.output.format = TextureOutput::png;
+  const auto is_plain = [&](int side) {
+    const Model model = test::small_charts(side);
+    const Image8 half =
+        resized(decode_image(model.images[0].bytes), side / 2, side / 2, {}, Wrap::repeat, Wrap::repeat, {});
+    return decode_image(shrink(model, options).model.images[0].bytes).pixels == half.pixels;
+  };
+  // Pictures of 512² to 2048² show smaller copies of a large image, and texels of a small one one by one.
+  EXPECT_TRUE(is_plain(2048));
+  EXPECT_FALSE(is_plain(80));
+}
+
 TEST(ShrinkTextures, TexelsMoveWhereASideBecomesAQuarterOrLess) {
   ShrinkOptions options;
   options.scale = 0.3;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -12,10 +13,12 @@
 #include "fovea/io/image_codec.h"
 #include "fovea/model/texture_use.h"
 #include "fovea/texture/bake.h"
+#include "fovea/texture/image_loss.h"
 #include "fovea/texture/image_use.h"
 #include "fovea/texture/image_ways.h"
 #include "fovea/texture/normal_bake.h"
 #include "fovea/texture/rebake.h"
+#include "fovea/texture/seen_points.h"
 
 namespace fovea {
 
@@ -253,6 +256,27 @@ class Shrinker {
     }
   }
 
+  Image8 sized(const Image8& picture, const WantedImage& size, const ImageUse& use) const {
+    return size.file
+               ? resized_for_way(picture, size.width, size.height, use, context_)
+               : resized(picture, size.width, size.height, use.meaning, use.wrap_u, use.wrap_v, context_);
+  }
+
+  /// Whether pictures of all sizes together tell one of two smaller images less from the whole than the
+  /// other.
+  bool is_nearer(const Image8& one, const Image8& other, const Image8& whole, const ImageUse& use,
+                 std::span<const AtlasFace> faces) const {
+    const ImageSights sights(result_.model, faces, field_, {kPictureSizes.begin(), kPictureSizes.end()});
+    const ImageLoss loss(sights, whole, use, context_);
+    const auto together = [&](const Image8& image) {
+      double sum = 0;
+      for (const double lost : loss.of(image, context_)) sum += std::log(lost + kLeastImageLoss);
+      return sum;
+    };
+    return together(one) < together(other);
+  }
+
+  /// Between charts it is filled unless pictures show more of what lay there: large halves keep that.
   void resize(int image, std::span<const AtlasFace> faces) {
     try {
       const ImageUse& use = uses_[index(image)];
@@ -261,13 +285,18 @@ class Shrinker {
       const Image8 old = rebake_ != nullptr && !is_smaller(image) ? picture : Image8();
       if (rebake_ != nullptr) {
         picture = rebaked(image, picture);
-      } else if (is_smaller(image) && (!size.file || size.file->fill)) {
-        fill_between(picture, faces, context_);
+        if (is_smaller(image)) picture = sized(picture, size, use);
+      } else if (is_smaller(image)) {
+        Image8 filled = picture;
+        if (!size.file || size.file->fill) fill_between(filled, faces, context_);
+        const bool is_same = filled.pixels == picture.pixels;
+        filled = sized(filled, size, use);
+        if (!size.file && !is_same) {
+          Image8 unfilled = sized(picture, size, use);
+          if (is_nearer(unfilled, filled, picture, use, faces)) filled = std::move(unfilled);
+        }
+        picture = std::move(filled);
       }
-      if (is_smaller(image))
-        picture = size.file ? resized_for_way(picture, size.width, size.height, use, context_)
-                            : resized(picture, size.width, size.height, use.meaning, use.wrap_u, use.wrap_v,
-                                      context_);
       finish(image, picture, faces, old);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
