@@ -78,8 +78,8 @@ struct Shrunk {
 /// Where texels may move, they go where they matter (atlas_warp.h), and the coordinates of triangles with
 /// them; where they gain nothing by that they stay, and images are `resized` as what they stand for
 /// (`image_uses`). Of images that only triangles read, all of them known, what no triangle covers is filled
-/// from what is around, so that nothing comes in from between the charts. Then they are encoded to an error
-/// (image_output.h).
+/// from what is around, so that nothing comes in from between the charts; where no warp is tried, unless
+/// pictures lose more by that. Then they are encoded to an error (image_output.h).
 ///
 /// With `RebakeOptions::original` images are baked anew for a surface that was simplified: each texel shows
 /// what the original had at the place that it stands for (surface_origin.h), wherever it has moved to. An
