@@ -343,6 +343,23 @@ TEST(ShrinkTextures, PicturesDecideWhetherAllSidesAreHalvedAlike) {
   EXPECT_EQ(shrink(model, options).model.images, by_estimate.model.images);
 }
 
+TEST(ShrinkTextures, WhatWouldOnlyGrowDoesNotKeepOthersFromBeingHalved) {
+  Model model = detailed_and_flat();
+  model.images[1] = png(Image8(128, 128, 3, ColorEncoding::srgb));  // a file of a few bytes
+  ShrinkOptions options;
+  options.output.format = TextureOutput::jpeg;
+  options.max_bytes = 6000;
+  std::vector<int> seen;
+  options.lost = [&](const Model& tried) {
+    EXPECT_EQ(tried.images[1], model.images[1]);
+    seen.push_back(decode_image(tried.images[0].bytes).width);
+    return 1.0;
+  };
+  shrink(model, options);
+  EXPECT_GT(seen.size(), 1u);
+  EXPECT_THAT(seen, testing::Contains(64));
+}
+
 TEST(ShrinkTextures, PicturesDecideWhetherAllFilesAreAsNear) {
   Model model = detailed_and_flat();
   Image8 faint = picture(128, 128);

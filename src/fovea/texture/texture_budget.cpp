@@ -145,7 +145,10 @@ TextureBudget::Numbers TextureBudget::numbers_within(double bytes, std::optional
     Numbers& own = allowed.emplace_back();
     for (std::size_t w = 0; w < candidate.ways.size(); ++w)
       if (!halvings || is_halved(candidate, candidate.ways[w], *halvings)) own.push_back(w);
-    if (own.empty()) return {};
+    if (!own.empty()) continue;
+    const auto stays = std::ranges::find_if(candidate.ways, [](const ImageWay& way) { return !way.file; });
+    if (stays == candidate.ways.end()) return {};
+    own.push_back(static_cast<std::size_t>(stays - candidate.ways.begin()));
   }
   Numbers numbers;
   for (int round = 0; round < kRounds; ++round) {
@@ -256,54 +259,55 @@ std::vector<WantedImage> TextureBudget::choose_halved(double bytes, int halvings
   return ways.empty() ? std::vector<WantedImage>{} : wanted(ways);
 }
 
-std::vector<ImageOutput> TextureBudget::encoded_alike(std::span<const Image8> pictures,
-                                                      double psnr_db) const {
+std::vector<std::optional<ImageOutput>> TextureBudget::encoded_alike(std::span<const Image8> pictures,
+                                                                     double psnr_db) const {
   ImageOutputOptions options = options_;
   options.psnr_db = psnr_db;
-  std::vector<std::optional<ImageOutput>> tried(pictures.size());
+  std::vector<std::optional<ImageOutput>> outputs(pictures.size());
   parallel_for_or_throw(context_, pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const ImageChange::State& file = files_[candidates_[c].image];
-      tried[c] = encode_output(pictures[c], uses_[candidates_[c].image], file.mime_type, file.bytes, options);
+      outputs[c] =
+          encode_output(pictures[c], uses_[candidates_[c].image], file.mime_type, file.bytes, options);
     }
   });
-  std::vector<ImageOutput> outputs;
-  for (std::optional<ImageOutput>& output : tried) {
-    if (!output) return {};
-    outputs.push_back(std::move(*output));
-  }
   return outputs;
 }
 
 std::vector<WantedImage> TextureBudget::choose_alike(double bytes, int halvings) const {
   std::vector<Image8> pictures;
   for (const Candidate& candidate : candidates_) {
-    const auto same = [&](const ImageWay& way) { return is_halved(candidate, way, halvings); };
-    const auto way = std::ranges::find_if(candidate.ways, same);
-    if (way == candidate.ways.end()) return {};
+    const ImageChange::State& file = files_[candidate.image];
     const ImageUse& use = uses_[candidate.image];
+    const int width = std::max(1, file.width >> halvings), height = std::max(1, file.height >> halvings);
+    if (width > candidate.limits.width || height > candidate.limits.height) return {};
     pictures.push_back(
-        resized_for_way(without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use),
-                        way->width, way->height, use, context_));
+        resized_for_way(without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use), width,
+                        height, use, context_));
   }
-  std::vector<ImageOutput> best;
+  std::vector<std::optional<ImageOutput>> best;
   int fits = 0, too_much = kAlikeSteps;
   while (too_much - fits > 1) {
     const int middle = fits + (too_much - fits) / 2;
-    std::vector<ImageOutput> outputs = encoded_alike(pictures, kLeastAlikeDb + middle * kAlikeStepDb);
+    std::vector<std::optional<ImageOutput>> outputs =
+        encoded_alike(pictures, kLeastAlikeDb + middle * kAlikeStepDb);
     double sum = kept_bytes_;
-    for (const ImageOutput& output : outputs) sum += static_cast<double>(output.texture.bytes.size());
-    const bool is_good = !outputs.empty() && sum <= bytes;
-    (is_good ? fits : too_much) = middle;
-    if (is_good) best = std::move(outputs);
+    for (std::size_t c = 0; c < outputs.size(); ++c) {
+      const std::uint64_t file = files_[candidates_[c].image].bytes;
+      sum += static_cast<double>(outputs[c] ? outputs[c]->texture.bytes.size() : file);
+      if (!outputs[c] && !limits_[candidates_[c].image].stays) return {};
+    }
+    (sum <= bytes ? fits : too_much) = middle;
+    if (sum <= bytes) best = std::move(outputs);
   }
   if (best.empty()) return {};
   std::vector<WantedImage> images = limits_;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    if (!best[c]) continue;
     WantedImage& image = images[candidates_[c].image];
     image = {pictures[c].width, pictures[c].height,
              image.psnr_db,     false,
-             SizeReason::bytes, FileChoice{best[c].format, best[c].texture.quality, false}};
+             SizeReason::bytes, FileChoice{best[c]->format, best[c]->texture.quality, false}};
   }
   return images;
 }

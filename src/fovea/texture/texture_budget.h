@@ -46,7 +46,8 @@ class TextureBudget {
   std::vector<WantedImage> choose(double bytes, bool refine);
   /// The same as numbers of ways [#images], `kNoWay` for images that stay as they are.
   std::vector<std::size_t> choose_ways(double bytes, bool refine);
-  /// Both of images that all have their own sides halved so many times; empty if some do not come so.
+  /// Both of images that all have their own sides halved so many times, but for those whose files would only
+  /// grow; empty if one does not come so and cannot stay as it is.
   std::vector<WantedImage> choose_halved(double bytes, int halvings, bool refine);
   std::vector<std::size_t> choose_halved_ways(double bytes, int halvings, bool refine);
 
@@ -98,8 +99,9 @@ class TextureBudget {
   bool is_halved(const Candidate& candidate, const ImageWay& way, int times) const;
   std::vector<std::size_t> ways_of(const Numbers& numbers) const;
   std::vector<WantedImage> wanted(std::span<const std::size_t> ways) const;
-  /// Each encoded so near, as far as its file before was larger; empty if some cannot be.
-  std::vector<ImageOutput> encoded_alike(std::span<const Image8> pictures, double psnr_db) const;
+  /// [#candidates] Each encoded so near, or less if its file would grow; none where it would anyway.
+  std::vector<std::optional<ImageOutput>> encoded_alike(std::span<const Image8> pictures,
+                                                        double psnr_db) const;
   const Candidate* find(std::size_t image) const;
   double area(const Candidate& candidate) const { return candidate.area * candidate.weight; }
 
