@@ -141,15 +141,19 @@ TextureBudget::Numbers TextureBudget::numbers_within(double bytes, std::optional
       sums[c] += all[c] / static_cast<double>(candidate.ways.size());
   }
   std::vector<Numbers> allowed;
+  bool some = false;
   for (const Candidate& candidate : candidates_) {
     Numbers& own = allowed.emplace_back();
     for (std::size_t w = 0; w < candidate.ways.size(); ++w)
       if (!halvings || is_halved(candidate, candidate.ways[w], *halvings)) own.push_back(w);
-    if (!own.empty()) continue;
-    const auto stays = std::ranges::find_if(candidate.ways, [](const ImageWay& way) { return !way.file; });
-    if (stays == candidate.ways.end()) return {};
-    own.push_back(static_cast<std::size_t>(stays - candidate.ways.begin()));
+    if (!own.empty()) {
+      some = true;
+      continue;
+    }
+    own.resize(candidate.ways.size());
+    std::iota(own.begin(), own.end(), std::size_t{0});
   }
+  if (!some) return {};
   Numbers numbers;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::vector<LadderStep>> steps;
@@ -295,7 +299,6 @@ std::vector<WantedImage> TextureBudget::choose_alike(double bytes, int halvings)
     for (std::size_t c = 0; c < outputs.size(); ++c) {
       const std::uint64_t file = files_[candidates_[c].image].bytes;
       sum += static_cast<double>(outputs[c] ? outputs[c]->texture.bytes.size() : file);
-      if (!outputs[c] && !limits_[candidates_[c].image].stays) return {};
     }
     (sum <= bytes ? fits : too_much) = middle;
     if (sum <= bytes) best = std::move(outputs);

@@ -46,14 +46,14 @@ class TextureBudget {
   std::vector<WantedImage> choose(double bytes, bool refine);
   /// The same as numbers of ways [#images], `kNoWay` for images that stay as they are.
   std::vector<std::size_t> choose_ways(double bytes, bool refine);
-  /// Both of images that all have their own sides halved so many times, but for those whose files would only
-  /// grow; empty if one does not come so and cannot stay as it is.
+  /// Both of images that all have their own sides halved so many times, but for those that do not come so, as
+  /// their files would only grow; empty if none do.
   std::vector<WantedImage> choose_halved(double bytes, int halvings, bool refine);
   std::vector<std::size_t> choose_halved_ways(double bytes, int halvings, bool refine);
 
   /// Those halved so many times by Lanczos alone and all encoded as near (`encoding_psnr`), as near as the
-  /// bytes allow: what somebody would do who measures nothing. Empty as above, or if none fit. Encodes all
-  /// images seven times.
+  /// bytes allow: what somebody would do who measures nothing. Empty if some are not to be so large, or none
+  /// fit. Encodes all images seven times.
   std::vector<WantedImage> choose_alike(double bytes, int halvings) const;
 
   static constexpr std::size_t kNoWay = static_cast<std::size_t>(-1);
