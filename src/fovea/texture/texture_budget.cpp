@@ -141,19 +141,17 @@ TextureBudget::Numbers TextureBudget::numbers_within(double bytes, std::optional
       sums[c] += all[c] / static_cast<double>(candidate.ways.size());
   }
   std::vector<Numbers> allowed;
-  bool some = false;
+  bool any_comes_so = false;
   for (const Candidate& candidate : candidates_) {
     Numbers& own = allowed.emplace_back();
     for (std::size_t w = 0; w < candidate.ways.size(); ++w)
       if (!halvings || is_halved(candidate, candidate.ways[w], *halvings)) own.push_back(w);
-    if (!own.empty()) {
-      some = true;
-      continue;
-    }
+    any_comes_so |= !own.empty();
+    if (!own.empty()) continue;
     own.resize(candidate.ways.size());
     std::iota(own.begin(), own.end(), std::size_t{0});
   }
-  if (!some) return {};
+  if (!any_comes_so) return {};
   Numbers numbers;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::vector<LadderStep>> steps;
