@@ -47,7 +47,7 @@ class TextureBudget {
   /// The same as numbers of ways [#images], `kNoWay` for images that stay as they are.
   std::vector<std::size_t> choose_ways(double bytes, bool refine);
   /// Both of images that all have their own sides halved so many times, but for those that do not come so, as
-  /// their files would only grow; empty if none do.
+  /// their files would only grow or they are not to be so large; empty if none do.
   std::vector<WantedImage> choose_halved(double bytes, int halvings, bool refine);
   std::vector<std::size_t> choose_halved_ways(double bytes, int halvings, bool refine);
 
