@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "fovea/base/error.h"
 #include "support/meshes.h"
@@ -51,6 +53,16 @@ TEST(MetricStage, ViewsOfTheImageGrowWithTheTarget) {
   EXPECT_EQ(metric_stage(options, 10, 10000).view_size, 100);
 }
 
+TEST(MetricStage, CamerasMaySeeAPartAlone) {
+  SimplifyOptions options;
+  options.views.set = ViewSet::cameras;
+  const MetricStage large = metric_stage(options, 20000, 100000);
+  EXPECT_EQ(large.metric, Metric::image);
+  EXPECT_EQ(large.from, 40000u);
+  EXPECT_EQ(metric_stage(options, 1000, 100000).from, 12000u);
+  EXPECT_EQ(metric_stage(options, 0, 100000).metric, Metric::quadric) << "no count is asked for";
+}
+
 // --- What it does --------------------------------------------------------------------------------------
 
 SimplifyResult run_stages(const Model& model, const SimplifyOptions& options) {
@@ -78,8 +90,8 @@ TEST(MetricStage, TheRecordGoesOnFromQuadricsToViews) {
   EXPECT_TRUE(
       std::is_sorted(result.record.steps.begin(), result.record.steps.end(),
                      [](const CollapseStep& a, const CollapseStep& b) { return a.error_rel < b.error_rel; }));
-  // The first part is that of quadrics alone.
-  options.metric = Metric::quadric;
+  // The first part is that of quadrics by what is seen, which is half of a ball everywhere.
+  options.metric = Metric::visibility;
   const SimplifyResult quadric = run_stages(model, options);
   std::size_t same = 0;
   while (same < quadric.record.steps.size() &&
@@ -96,6 +108,65 @@ TEST(MetricStage, ByVisibilityWhatNoViewSeesGoesFirst) {
   const SimplifyResult result = run_stages(ball_in_ball(), options);
   EXPECT_EQ(result.metric, Metric::visibility);
   EXPECT_GE(result.model.meshes[0].surface.face_count(), 1200u) << "of 1280; the target is 1536";
+}
+
+/// The least and the largest weight of each mesh.
+std::vector<std::pair<float, float>> weights(Metric metric, const Model& model, ViewSet set) {
+  Context context;
+  SimplifyOptions options;
+  options.metric = metric;
+  options.views.set = set;
+  const ViewedModel viewed = viewed_model(model, options.views, context);
+  std::vector<std::pair<float, float>> found;
+  for (const VertexField& field :
+       exposed_importance(model, viewed, options, metric_stage(options, 0, 0), context)) {
+    const auto [least, most] = std::ranges::minmax(field.values());
+    found.emplace_back(least, most);
+  }
+  return found;
+}
+
+/// A camera at `eye` that looks along −z.
+void add_camera(Model& model, Vec3d eye, double yfov_rad) {
+  model.cameras.emplace_back().yfov_rad = yfov_rad;
+  Node node;
+  node.camera = static_cast<int>(model.cameras.size()) - 1;
+  node.translation = eye;
+  model.nodes.push_back(node);
+  model.scenes[0].nodes.push_back(static_cast<int>(model.nodes.size()) - 1);
+}
+
+TEST(MetricStage, WhatIsSeenWeighsMore) {
+  Model model = ball_in_ball();
+  const auto image = weights(Metric::image, model, ViewSet::dodecahedron);
+  EXPECT_FLOAT_EQ(image[1].first, 0.2f);
+  EXPECT_FLOAT_EQ(image[1].second, 0.2f) << "hidden";
+  EXPECT_GT(image[0].first, 0.8f) << "convex";
+  EXPECT_LT(image[0].second, 1.2f);
+  const auto visibility = weights(Metric::visibility, model, ViewSet::dodecahedron);
+  EXPECT_FLOAT_EQ(visibility[1].second, 0.001f);
+  EXPECT_FLOAT_EQ(visibility[0].first, image[0].first / 2);
+  // A camera does not see the other side.
+  add_camera(model, {0, 0, 5}, 0.5);
+  const auto camera = weights(Metric::image, model, ViewSet::cameras);
+  EXPECT_FLOAT_EQ(camera[0].first, 0.001f);
+  EXPECT_FLOAT_EQ(camera[0].second, 1);
+  EXPECT_FLOAT_EQ(camera[1].second, 0.001f);
+}
+
+TEST(MetricStage, TrianglesGoWhereACameraLooks) {
+  // Two balls, one of them in the picture.
+  Model model = test::model_of({test::icosphere(4), test::icosphere(4)});
+  model.nodes[1].translation = Vec3d{10, 0, 0};
+  add_camera(model, {10, 0, 5}, 0.6);
+  SimplifyOptions options;
+  options.ratio = 0.2;
+  options.views.set = ViewSet::cameras;
+  const SimplifyResult result = run_stages(model, options);
+  EXPECT_EQ(result.stop, StopReason::target);
+  EXPECT_GT(result.model.meshes[1].surface.face_count(), 0.8 * 2048) << "of a target of 2048";
+  options.views.set = ViewSet::dodecahedron;
+  EXPECT_LT(run_stages(model, options).model.meshes[1].surface.face_count(), 0.6 * 2048);
 }
 
 TEST(MetricStage, HiddenTrianglesAreDroppedFirstAndTheRecordSaysSo) {
@@ -133,13 +204,7 @@ TEST(MetricStage, HiddenTrianglesAreDroppedWhateverDecides) {
 
 TEST(MetricStage, AModelOfWhichNothingIsSeenIsRefused) {
   Model model = test::model_of(test::grid(2, 2));
-  Camera camera;
-  model.cameras.push_back(camera);
-  Node node;
-  node.camera = 0;
-  node.translation = Vec3d{0, 0, -5};  // behind the sheet
-  model.nodes.push_back(node);
-  model.scenes[0].nodes.push_back(1);
+  add_camera(model, {0, 0, -5}, 0.8);  // behind the sheet
   SimplifyOptions options;
   options.ratio = 0.5;
   options.cull_hidden = true;

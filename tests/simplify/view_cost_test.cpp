@@ -26,11 +26,15 @@ struct Trial {
   std::vector<VertexField> importance;  // [#meshes] or empty
   CollapseState state;
   std::vector<std::size_t> mesh_index;
-  std::unique_ptr<ViewMetric> views;
   Context context;
+  ViewedModel viewed;
+  std::unique_ptr<ViewMetric> views;
 
   Trial(const Model& m, const SimplifyOptions& o, std::vector<VertexField> fields = {}, int threads = 1)
-      : model(m), options(o), importance(std::move(fields)) {
+      : model(m),
+        options(o),
+        importance(std::move(fields)),
+        viewed(viewed_model(model, options.views, context)) {
     context.threads = threads;
     std::vector<const TriMesh*> meshes;
     std::vector<const VertexField*> pointers;
@@ -41,7 +45,7 @@ struct Trial {
     }
     const std::vector<double> scales(meshes.size(), 1.0);
     state = make_collapse_state(meshes, scales, pointers, {}, bounds(model).diagonal(), options, context);
-    views = std::make_unique<ViewMetric>(state, model, mesh_index, stage(), options, context);
+    views = std::make_unique<ViewMetric>(state, model, mesh_index, viewed, stage(), options, context);
     views->look(pointers);
   }
   MetricStage stage() const { return metric_stage(options, 0, 0); }
@@ -53,7 +57,7 @@ struct Trial {
   }
   /// Views of the state as it is now, drawn anew.
   std::unique_ptr<ViewMetric> fresh() {
-    auto drawn = std::make_unique<ViewMetric>(state, model, mesh_index, stage(), options, context);
+    auto drawn = std::make_unique<ViewMetric>(state, model, mesh_index, viewed, stage(), options, context);
     drawn->look({});
     return drawn;
   }

@@ -164,7 +164,7 @@ void Engine::price_edges() {
     for (std::uint32_t i = 0; i < count; ++i) {
       if (!std::isfinite(cost[i])) continue;
       const auto quadric_cost = static_cast<double>(cost[i]);
-      queue_.set(first + i, views_ == nullptr ? quadric_cost : ViewMetric::least_price(quadric_cost));
+      queue_.set(first + i, views_ == nullptr ? quadric_cost : views_->least_price(quadric_cost));
     }
   }
 }

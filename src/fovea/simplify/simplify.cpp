@@ -51,16 +51,18 @@ struct Batch {
   std::vector<std::size_t> mesh_index;
   std::vector<const TriMesh*> meshes;
   std::vector<double> scales;
-  std::vector<const VertexField*> importance;
+  std::vector<const VertexField*> importance;  // null where there is none
+  std::vector<const VertexField*> weights;     // of quadrics: importance, and how much is seen
   std::vector<const std::vector<FaceId>*> hidden;  // empty if nothing is
   std::uint64_t triangles = 0;                     // hidden ones among them
 
   void add(const Model& model, std::size_t m, double scale, const Importance& fields,
-           const std::vector<std::vector<FaceId>>& without) {
+           const Importance& quadric_fields, const std::vector<std::vector<FaceId>>& without) {
     mesh_index.push_back(m);
     meshes.push_back(&model.meshes[m].surface);
     scales.push_back(scale);
     importance.push_back(fields.empty() ? nullptr : &fields[m]);
+    weights.push_back(quadric_fields.empty() ? nullptr : &quadric_fields[m]);
     if (!without.empty()) hidden.push_back(&without[m]);
     triangles += model.meshes[m].surface.face_count();
   }
@@ -68,13 +70,13 @@ struct Batch {
 
 /// One batch for the scene, or one per mesh.
 std::vector<Batch> make_batches(const Model& model, const std::vector<double>& scales,
-                                const Importance& importance, const std::vector<std::vector<FaceId>>& hidden,
-                                bool per_mesh) {
+                                const Importance& importance, const Importance& weights,
+                                const std::vector<std::vector<FaceId>>& hidden, bool per_mesh) {
   std::vector<Batch> batches;
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     if (model.meshes[m].surface.face_count() == 0) continue;
     if (batches.empty() || per_mesh) batches.emplace_back();
-    batches.back().add(model, m, scales[m], importance, hidden);
+    batches.back().add(model, m, scales[m], importance, weights, hidden);
   }
   return batches;
 }
@@ -92,6 +94,12 @@ std::optional<std::uint64_t> triangle_target(const SimplifyOptions& options, std
   if (options.triangles)
     raise(std::min(1.0, static_cast<double>(*options.triangles) / static_cast<double>(total)));
   return target;
+}
+
+/// Of the model as a whole.
+MetricStage stage_of(const Model& model, const SimplifyOptions& options) {
+  const std::uint64_t total = counts(model).triangles;
+  return metric_stage(options, triangle_target(options, total, total).value_or(0), total);
 }
 
 /// In units of the scene's diagonal; infinity without an error target.
@@ -134,9 +142,9 @@ void drop_hidden(const Batch& batch, CollapseRecord& record) {
 
 /// Collapses a batch, by quadrics first and then by what views see, as the stage says.
 CollapseOutcome collapse_batch(const Model& model, const Batch& batch, std::uint64_t target,
-                               const MetricStage& stage, const SimplifyOptions& options, double diagonal,
-                               Context& context) {
-  CollapseState state = make_collapse_state(batch.meshes, batch.scales, batch.importance, batch.hidden,
+                               const MetricStage& stage, const ViewedModel& viewed,
+                               const SimplifyOptions& options, double diagonal, Context& context) {
+  CollapseState state = make_collapse_state(batch.meshes, batch.scales, batch.weights, batch.hidden,
                                             diagonal, options, context);
   const double bound = error_bound(options, diagonal);
   CollapseOutcome outcome;
@@ -145,7 +153,7 @@ CollapseOutcome collapse_batch(const Model& model, const Batch& batch, std::uint
     collapse(state, target, bound, options, nullptr, context, outcome);
     return outcome;
   }
-  ViewMetric views(state, model, batch.mesh_index, stage, options, context);
+  ViewMetric views(state, model, batch.mesh_index, viewed, stage, options, context);
   if (stage.from < batch.triangles) collapse(state, stage.from, bound, options, nullptr, context, outcome);
   if (outcome.stop != StopReason::target) return outcome;
   views.look(batch.importance);
@@ -331,14 +339,18 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
                         Context& context) {
   const auto start = std::chrono::steady_clock::now();
   check_request(model, options, importance);
-  const Importance weights = options.metric == Metric::visibility
-                                 ? product(importance, exposed_importance(model, options, context))
-                                 : importance;
+  ViewedModel viewed;
+  Importance weights = importance;
+  if (const MetricStage stage = stage_of(model, options); stage.metric != Metric::quadric) {
+    viewed = viewed_model(model, options.views, context);
+    if (stage.is_by_exposure())
+      weights = product(importance, exposed_importance(model, viewed, options, stage, context));
+  }
   const auto hidden =
       options.cull_hidden ? hidden_of(model, options.views, context) : std::vector<std::vector<FaceId>>{};
   const double diagonal = scene_diagonal(model);
   const std::vector<Batch> batches =
-      make_batches(model, mesh_scales(model), weights, hidden, options.per_mesh);
+      make_batches(model, mesh_scales(model), importance, weights, hidden, options.per_mesh);
 
   SimplifyResult result;
   for (const Batch& batch : batches) result.triangles_before += batch.triangles;
@@ -352,7 +364,7 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
     result.triangles_target += target;
     result.metric = stage.metric;
     result.metric_from = stage.from;
-    CollapseOutcome outcome = collapse_batch(model, batch, target, stage, options, diagonal, context);
+    CollapseOutcome outcome = collapse_batch(model, batch, target, stage, viewed, options, diagonal, context);
     combine(result, outcome);
     levels.push_back(replay(batch.meshes, outcome.record, outcome.record.steps.size()));
     append(result.record, std::move(outcome.record), batch.mesh_index);

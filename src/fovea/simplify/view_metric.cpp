@@ -30,8 +30,8 @@ PixelContent content_of(Metric metric, ImagePass pass) {
 }  // namespace
 
 ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
-                       std::span<const std::size_t> mesh_index, const MetricStage& stage,
-                       const SimplifyOptions& options, Context& context)
+                       std::span<const std::size_t> mesh_index, const ViewedModel& viewed,
+                       const MetricStage& stage, const SimplifyOptions& options, Context& context)
     : state_(state),
       context_(context),
       team_(context),
@@ -40,12 +40,11 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
       placement_(options.placement),
       content_(content_of(stage.metric, options.image_pass)),
       size_(stage.view_size),
-      pose_(rest_pose(model)),
-      scene_(make_render_scene(model, pose_, context, nullptr, SceneTextures::base_and_finish)),
-      views_(views_of(options.views, model, pose_, scene_.sphere)) {
-  if (static_cast<double>(views_.size()) * size_ * size_ > kMostPixels) {
+      viewed_(viewed),
+      tie_(is_image() ? kImageTie : kEntropyTie) {
+  if (static_cast<double>(viewed_.views.size()) * size_ * size_ > kMostPixels) {
     throw Error(ErrorKind::limit,
-                fmt::format("{} views of {} × {} pixels are more than a metric looks at", views_.size(),
+                fmt::format("{} views of {} × {} pixels are more than a metric looks at", viewed_.views.size(),
                             size_, size_),
                 "--view-size", "take fewer or smaller views");
   }
@@ -58,10 +57,10 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
 /// A few views at a time, as a model may have far more vertices now than when it is looked at.
 void ViewMetric::take_pictures() {
   const std::size_t row = std::max<std::size_t>(state_.mesh.vertices.size() * sizeof(ScreenVertex), 1);
-  const std::size_t together = std::clamp<std::size_t>(kMostScreenBytes / row, 1, views_.size());
-  for (std::size_t first = 0; first < views_.size(); first += together) {
-    const std::size_t count = std::min(together, views_.size() - first);
-    make_cost(std::span(views_).subspan(first, count), {});
+  const std::size_t together = std::clamp<std::size_t>(kMostScreenBytes / row, 1, viewed_.views.size());
+  for (std::size_t first = 0; first < viewed_.views.size(); first += together) {
+    const std::size_t count = std::min(together, viewed_.views.size() - first);
+    make_cost(std::span(viewed_.views).subspan(first, count), {});
     for (std::size_t v = 0; v < count; ++v) originals_.push_back(cost_->picture(v));
     cost_.reset();
   }
@@ -69,9 +68,9 @@ void ViewMetric::take_pictures() {
 
 /// Draws the state as it is in some views.
 void ViewMetric::make_cost(std::span<const View> views, Pictures originals) {
-  shown_ = std::make_unique<ShownSurface>(state_, model_, mesh_index_, scene_, pose_,
+  shown_ = std::make_unique<ShownSurface>(state_, model_, mesh_index_, viewed_.scene, viewed_.pose,
                                           std::vector<View>(views.begin(), views.end()), size_, context_);
-  values_ = std::make_unique<FaceValues>(state_, *shown_, scene_, content_, size_, regions_.get(),
+  values_ = std::make_unique<FaceValues>(state_, *shown_, viewed_.scene, content_, size_, regions_.get(),
                                          mesh_index_, context_);
   cost_ = std::make_unique<ViewCost>(state_, *shown_, *values_,
                                      is_image() ? ViewMeasure::image : ViewMeasure::entropy, size_,
@@ -79,8 +78,8 @@ void ViewMetric::make_cost(std::span<const View> views, Pictures originals) {
 }
 
 void ViewMetric::look(std::span<const VertexField* const> importance) {
-  make_cost(views_, std::move(originals_));
-  const auto count = static_cast<double>(views_.size());
+  make_cost(viewed_.views, std::move(originals_));
+  const auto count = static_cast<double>(viewed_.views.size());
   scale_ = is_image() ? 1 / (3.0 * 255 * 255 * count * size_ * size_) : 1 / count;
   place_.resize(state_.mesh.edges.size());
   part_.resize(state_.mesh.edges.size());
@@ -109,7 +108,7 @@ double ViewMetric::price(std::uint32_t e, const Candidate& place, const ValueMer
 double ViewMetric::price_up_to(double limit, std::uint32_t e, const Candidate& place, const ValueMerge& merge,
                                ViewCost::Scratch& scratch, PartialChange& part) const {
   const auto [a, b] = state_.mesh.edges[e].ends;
-  const double tie = kTie * place.cost;
+  const double tie = tie_ * place.cost;
   double scale = scale_;
   // Locked ends have an infinite importance, but do not move.
   if (!importance_.empty()) {
@@ -125,7 +124,7 @@ double ViewMetric::price_up_to(double limit, std::uint32_t e, const Candidate& p
 
 double ViewMetric::price_of_loss(std::span<const std::uint32_t> faces, double cost,
                                  ViewCost::Scratch& scratch) const {
-  return std::max(cost_->change_without(faces, scratch), 0.0) * scale_ + kTie * cost;
+  return std::max(cost_->change_without(faces, scratch), 0.0) * scale_ + tie_ * cost;
 }
 
 void ViewMetric::note(std::uint32_t e, const Candidate& place, const PartialChange& part) {

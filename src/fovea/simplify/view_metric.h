@@ -28,7 +28,8 @@ class ViewMetric {
   /// `stage` has a metric by views. Takes the pictures that results are compared with, of the meshes of
   /// `state` as they are now. Their numbers in the model are `mesh_index`. All must outlive this.
   ViewMetric(const CollapseState& state, const Model& model, std::span<const std::size_t> mesh_index,
-             const MetricStage& stage, const SimplifyOptions& options, Context& context);
+             const ViewedModel& viewed, const MetricStage& stage, const SimplifyOptions& options,
+             Context& context);
 
   /// Draws what is left of the meshes; from now on prices can be asked for. `importance` are the fields that
   /// the state was made with.
@@ -51,7 +52,7 @@ class ViewMetric {
                      ViewCost::Scratch& scratch, PartialChange& part) const;
 
   /// The least that anything with this quadric error can cost.
-  static double least_price(double cost) { return kTie * cost; }
+  double least_price(double cost) const { return tie_ * cost; }
   /// The price of losing faces whose quadric error is `cost`, without importance.
   double price_of_loss(std::span<const std::uint32_t> faces, double cost, ViewCost::Scratch& scratch) const;
 
@@ -76,10 +77,9 @@ class ViewMetric {
   Team& team() { return team_; }
 
  private:
-  /// How much the quadric error (distance² × area, in diagonals) counts beside the share of all pixels that
-  /// change. On three models at 5 % a thirtieth of it loses where parts are small, ten times as much loses
-  /// against it elsewhere.
-  static constexpr double kTie = 10;
+  /// How much the quadric error (distance² × area, in diagonals) counts beside what changes in all views, of
+  /// pictures and of the entropy of regions. Why: docs/simplification.md.
+  static constexpr double kImageTie = 2.5, kEntropyTie = 10;
 
   using Pictures = std::vector<std::vector<std::uint32_t>>;  // [#views][#pixels]
   bool is_current(std::uint32_t e) const;
@@ -95,15 +95,14 @@ class ViewMetric {
   const Placement placement_;
   const PixelContent content_;
   const int size_;
-  const Pose pose_;
-  RenderScene scene_;
-  std::vector<View> views_;
+  const ViewedModel& viewed_;
   Pictures originals_;  // of the metric `image`, until `look`
   std::unique_ptr<ModelRegions> regions_;
   std::unique_ptr<ShownSurface> shown_;
   std::unique_ptr<FaceValues> values_;
   std::unique_ptr<ViewCost> cost_;
   double scale_ = 1;
+  const double tie_;
   std::vector<float> importance_;       // [#V], empty if all are 1
   std::vector<Candidate> place_;        // [#E], as noted
   std::vector<PartialChange> part_;     // [#E], that its price is of
