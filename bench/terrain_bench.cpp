@@ -202,8 +202,10 @@ class Experiment {
     }
     return ladders;
   }
+
   /// Meshes with the whole texture and textures on the whole mesh, by kind, at equal triangles and bytes.
   void print_single(const Ladders& paper, const Ladders& own) {
+    const Model seen = with_camera();
     const TextureRung whole_texture{scene_.images[image_of(scene_)].map, 0, 1};
     const MeshRung whole_mesh{land_.model, 0};
     const auto db = [&](const MeshRung& mesh, const TextureRung& texture) {
@@ -213,8 +215,7 @@ class Experiment {
         largest(land_.field, HeightError::largest, weights_), surface(land_.field, HeightError::squares);
     fmt::print(
         "| triangles | quadtree by squares, for the view | by the largest, for the view | by squares, for no "
-        "view | "
-        "collapses |\n|--:|--:|--:|--:|--:|\n");
+        "view | collapses, for the view | for no view |\n|--:|--:|--:|--:|--:|--:|\n");
     for (std::size_t i = 0; i < paper.meshes.size(); i += 11) {
       const std::size_t triangles = triangle_count(paper.meshes[i].model);
       fmt::print("| {}", triangles);
@@ -222,6 +223,7 @@ class Experiment {
         fmt::print(" | {:.2f}",
                    db({with_level(land_.model, land_.field, levels->level(levels->splits_to(triangles))), 0},
                       whole_texture));
+      fmt::print(" | {:.2f}", db({for_the_view(seen, triangles), 0}, whole_texture));
       const auto near = std::ranges::find_if(
           own.meshes, [&](const MeshRung& m) { return triangle_count(m.model) <= triangles + 2; });
       fmt::print(" | {:.2f} |\n", near == own.meshes.end() ? 0.0 : db(*near, whole_texture));
@@ -262,6 +264,39 @@ class Experiment {
   }
 
  private:
+  /// The land with the view as a camera of its own.
+  Model with_camera() const {
+    Model model = land_.model;
+    const View& view = land_.view;
+    Camera& camera = model.cameras.emplace_back();
+    camera.yfov_rad = 2 * std::atan(view.half_height);
+    Node node;
+    node.camera = static_cast<int>(model.cameras.size()) - 1;
+    Mat4& place = node.matrix.emplace();
+    const std::array columns{view.right, view.up, view.back, view.eye};
+    for (int c = 0; c < 4; ++c) {
+      const Vec3d& column = columns[static_cast<std::size_t>(c)];
+      place(0, c) = column.x;
+      place(1, c) = column.y;
+      place(2, c) = column.z;
+    }
+    model.nodes.push_back(node);
+    if (!model.scenes.empty())
+      model.scenes[0].nodes.push_back(static_cast<int>(model.nodes.size()) - 1);
+    return model;
+  }
+  /// So many triangles of a land with a camera, its picture deciding about all.
+  Model for_the_view(const Model& seen, std::size_t triangles) {
+    SimplifyOptions options;
+    options.triangles = static_cast<std::int64_t>(triangles);
+    options.metric = Metric::image;
+    options.metric_from = 1e9;
+    options.views.set = ViewSet::cameras;
+    options.view_size = kSize;
+    options.image_pass = ImagePass::base_color;
+    return simplify(seen, options, {}, context_).model;
+  }
+
   void add_mesh(Ladders& ladders, Model model) {
     const std::uint64_t bytes = geometry_bytes(model, context_);
     if (ladders.meshes.empty() || bytes < ladders.meshes.back().bytes)

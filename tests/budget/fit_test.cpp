@@ -70,6 +70,32 @@ TEST(Fit, KeepsToTheBytesAndSpendsThem) {
   }
 }
 
+TEST(Fit, SpendsBytesWhereCamerasLook) {
+  Model model = hills();
+  const Box box = bounds(model);
+  const double side = box.high.x - box.low.x;
+  model.cameras.emplace_back().yfov_rad = 0.6;
+  Node node;
+  node.camera = 0;
+  node.translation = Vec3d{box.low.x + side / 3, box.low.y + side / 3, box.high.z + side / 2};
+  model.nodes.push_back(node);
+  model.scenes[0].nodes.push_back(1);
+  const std::uint64_t bytes = file_bytes(model) / 20;
+  FitOptions around = quick(), cameras;
+  around.format = TextureOutput::jpeg;
+  cameras = around;
+  cameras.views.set = ViewSet::cameras;
+  Context context;
+  PictureLoss loss(model, cameras.views, 96, Distortion::mse, context);
+  const auto lost = [&](const FitOptions& options) {
+    const FitResult result = BudgetFit(model, options, context).within(bytes);
+    EXPECT_TRUE(result.reached);
+    EXPECT_LE(result.chosen.bytes, bytes);
+    return loss.of(result.model).value;
+  };
+  EXPECT_LT(1.5 * lost(cameras), lost(around)) << "that sees a tenth of the land";
+}
+
 TEST(Fit, IsNoWorseThanAnyFixedSplit) {
   const Model model = hills();
   Context context;

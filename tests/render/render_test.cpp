@@ -324,6 +324,35 @@ TEST(Render, OwnCamerasMustBeThere) {
   EXPECT_THROW(views_of(options, model, pose, scene.sphere), Error);
 }
 
+TEST(Render, ACameraThatMovesIsAPath) {
+  Model model = test::model_of(square(0, -1));
+  for (const double x : {0.0, 7.0}) {
+    Node node;
+    node.camera = static_cast<int>(model.cameras.size());
+    node.translation = Vec3d{x, 0, 5};
+    model.cameras.emplace_back();
+    model.nodes.push_back(node);
+  }
+  Animation animation;
+  animation.samplers.resize(1);
+  animation.samplers[0].input = Accessor::from_floats(std::vector<float>{0, 2}, 1);
+  animation.samplers[0].output = Accessor::from_floats(std::vector<float>{0, 0, 5, 4, 0, 5}, 3);
+  animation.channels = {{0, 1, "translation", {}}};
+  model.animations = {animation};
+  ViewOptions options;
+  options.set = ViewSet::cameras;
+  options.count = 5;
+  const Sphere sphere;
+  const std::vector<View> views = views_of(options, model, rest_pose(model), sphere);
+  ASSERT_EQ(views.size(), 6u) << "five along the way, one that stands";
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_DOUBLE_EQ(views[i].eye.x, static_cast<double>(i));
+  EXPECT_EQ(views[1].name, "camera-0-0-0.50s");
+  EXPECT_EQ(views[5].name, "camera-1");
+  EXPECT_DOUBLE_EQ(views[5].eye.x, 7);
+  // At a time of the animation it is where it is then.
+  EXPECT_EQ(views_of(options, model, pose_at(model, 0, 1), sphere).size(), 2u);
+}
+
 TEST(Render, FieldsAreShownAsHeat) {
   const Model model = test::model_of(square(0, -1));
   Context context;

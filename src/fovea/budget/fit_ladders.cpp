@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fovea/base/error.h"
+#include "fovea/budget/camera_sights.h"
 #include "fovea/io/gltf_read.h"
 #include "fovea/io/gltf_write.h"
 
@@ -43,6 +44,7 @@ MeshLadderOptions mesh_options(const Model& model, const FitOptions& options) {
   MeshLadderOptions result{options.triangles, options.gives == FitGives::texels,
                            options.ladders == FitLadderSet::separate && meshes <= kMostLadders};
   result.fewer = fewer_of(result.fewer, options);
+  result.by_cameras = options.views.set == ViewSet::cameras;
   return result;
 }
 
@@ -69,6 +71,13 @@ void FitLadders::make_image_ladders(const FitOptions& options) {
   ladder.shown_pixels = static_cast<double>(options.view_size);
   ladder.most_bytes = options.most_bytes;
   context_.advance_or_throw("textures", 0);
+  if (options.views.set == ViewSet::cameras) {
+    const Pose pose = rest_pose(model_);
+    const RenderScene scene = make_render_scene(model_, pose, scratch_);
+    viewers_ = camera_sights(model_, scene, views_of(options.views, model_, pose, scene.sphere),
+                             static_cast<int>(options.view_size), scratch_);
+    ladder.viewers = &*viewers_;
+  }
   textures_ = std::make_unique<TextureLadders>(model_, ladder, scratch_);
   make_image_levels();
   const auto& rungs = textures_->rungs();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "fovea/base/context.h"
@@ -11,6 +12,7 @@
 #include "fovea/budget/marginal.h"
 #include "fovea/budget/mesh_ladder.h"
 #include "fovea/budget/picture_loss.h"
+#include "fovea/texture/image_viewers.h"
 #include "fovea/texture/texture_ladder.h"
 
 // Shared inside Fovea, not installed.
@@ -83,6 +85,7 @@ class FitLadders {
   Context scratch_;
   PictureLoss pictures_;
   MeshLadders meshes_;
+  std::optional<ImageViewers> viewers_;
   std::unique_ptr<TextureLadders> textures_;
   std::vector<std::vector<std::size_t>> image_levels_;
   std::vector<ImageLadder> image_ladders_;

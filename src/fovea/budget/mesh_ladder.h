@@ -18,6 +18,7 @@ struct MeshLadderOptions {
   bool whole = false;                     ///< They keep all of their triangles.
   bool separate = false;                  ///< A ladder for each mesh, instead of one for all.
   double fewer = 0.7;                     ///< Triangles of a rung, of those of the one before.
+  bool by_cameras = false;                ///< Only the model's own cameras look at it.
 };
 
 /// A level of the meshes of one ladder.
@@ -29,7 +30,7 @@ struct MeshRung {
 
 /// The meshes of a model in fewer and fewer triangles: each rung has a part of those of the one before, down
 /// to half a percent. They are simplified once, pictures deciding about the last 12,000 triangles
-/// (Metric::image), and each rung is encoded to know its bytes.
+/// (Metric::image), or about all of them if only cameras look, and each rung is encoded to know its bytes.
 class MeshLadders {
  public:
   /// `model` must outlive this. Cost: one `simplify` and an encoding per rung. Throws as `simplify`.

@@ -1,5 +1,7 @@
 #include "fovea/render/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -213,10 +215,49 @@ std::vector<View> camera_views(const Model& model, const Pose& pose) {
   return views;
 }
 
+namespace {
+
+bool is_same(const View& a, const View& b) {
+  return a.eye == b.eye && a.right == b.right && a.up == b.up && a.back == b.back;
+}
+
+/// What the cameras see that an animation moves, at `count` times of it; the others once, at rest.
+std::vector<View> views_along(const Model& model, std::vector<View> resting, std::int64_t count) {
+  std::vector<std::vector<View>> paths(resting.size());
+  for (std::size_t a = 0; a < model.animations.size() && !resting.empty(); ++a) {
+    const double duration = duration_s(model.animations[a]);
+    std::vector<std::vector<View>> passed(resting.size());
+    for (std::int64_t i = 0; i < count; ++i) {
+      const double time =
+          duration * static_cast<double>(i) / static_cast<double>(std::max<std::int64_t>(count - 1, 1));
+      std::vector<View> now = camera_views(model, pose_at(model, a, time));
+      for (std::size_t c = 0; c < now.size(); ++c) {
+        if (!passed[c].empty() && is_same(passed[c].back(), now[c])) continue;
+        now[c].name += fmt::format("-{}-{:.2f}s", a, time);
+        passed[c].push_back(std::move(now[c]));
+      }
+    }
+    for (std::size_t c = 0; c < passed.size(); ++c) {
+      const bool is_moved =
+          passed[c].size() > 1 || (passed[c].size() == 1 && !is_same(passed[c][0], resting[c]));
+      if (is_moved) paths[c].insert(paths[c].end(), passed[c].begin(), passed[c].end());
+    }
+  }
+  std::vector<View> views;
+  for (std::size_t c = 0; c < resting.size(); ++c) {
+    if (paths[c].empty()) paths[c].push_back(std::move(resting[c]));
+    views.insert(views.end(), paths[c].begin(), paths[c].end());
+  }
+  return views;
+}
+
+}  // namespace
+
 std::vector<View> views_of(const ViewOptions& options, const Model& model, const Pose& pose,
                            const Sphere& sphere) {
   if (options.set != ViewSet::cameras) return make_views(options, sphere);
   std::vector<View> views = camera_views(model, pose);
+  if (pose == rest_pose(model)) views = views_along(model, std::move(views), options.count);
   if (views.empty())
     throw Error(ErrorKind::unsupported, "the model has no cameras", {}, "choose another set with --views");
   return views;

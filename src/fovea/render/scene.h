@@ -91,7 +91,8 @@ RenderScene make_render_scene(const TriMesh& mesh);
 /// What the model's own cameras see, node by node; their aspect ratio gives way to the picture's.
 std::vector<View> camera_views(const Model& model, const Pose& pose);
 
-/// The views of a set onto a model in a pose; around the sphere, unless they are its own cameras.
+/// The views of a set onto a model in a pose; around the sphere, unless they are its own cameras. Of cameras
+/// that animations move, `ViewOptions::count` places along each path, if the pose is that at rest.
 /// Throws Error(unsupported) if these are asked for and there are none.
 std::vector<View> views_of(const ViewOptions& options, const Model& model, const Pose& pose,
                            const Sphere& sphere);

@@ -56,17 +56,19 @@ std::vector<Vec3d> orbit(std::int64_t count, double elevation_deg) {
 }  // namespace
 
 OptionList describe(ViewOptions& o) {
-  return {{"views",
-           "Where to look from: the vertices of a solid, points spread over a sphere, an orbit around the "
-           "upright "
-           "axis, or the model's own cameras.",
-           choice(o.set, {"tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron",
-                          "rhombicuboctahedron", "fibonacci", "orbit", "cameras"}),
-           ""},
-          {"view-count", "How many views fibonacci and orbit have.", &o.count, "", 1, 4096},
-          {"elevation", "How high above the horizon an orbit is.", &o.elevation_deg, "degrees", -89, 89},
-          {"fov", "Vertical angle of view; 0 is parallel projection.", &o.fov_deg, "degrees", 0, 120},
-          {"margin", "Free border around the model's bounding sphere.", &o.margin, "of its radius", 0, 10}};
+  return {
+      {"views",
+       "Where to look from: the vertices of a solid, points spread over a sphere, an orbit around the "
+       "upright "
+       "axis, or the model's own cameras.",
+       choice(o.set, {"tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron",
+                      "rhombicuboctahedron", "fibonacci", "orbit", "cameras"}),
+       ""},
+      {"view-count", "How many views fibonacci and orbit have, and the path of a camera that is animated.",
+       &o.count, "", 1, 4096},
+      {"elevation", "How high above the horizon an orbit is.", &o.elevation_deg, "degrees", -89, 89},
+      {"fov", "Vertical angle of view; 0 is parallel projection.", &o.fov_deg, "degrees", 0, 120},
+      {"margin", "Free border around the model's bounding sphere.", &o.margin, "of its radius", 0, 10}};
 }
 
 std::vector<Vec3d> directions(const ViewOptions& options) {

@@ -35,12 +35,12 @@ enum class ViewSet {
   rhombicuboctahedron,  ///< 24: permutations of (±1, ±1, ±(1 + √2)), the protocol of Yang et al. 2016.
   fibonacci,            ///< `count` points spread evenly over the sphere on a spiral.
   orbit,                ///< `count` points around the upright axis at `elevation_deg`.
-  cameras,              ///< The model's own.
+  cameras,              ///< The model's own, `count` places along the path of one that an animation moves.
 };
 
 struct ViewOptions {
   ViewSet set = ViewSet::rhombicuboctahedron;
-  std::int64_t count = 24;    ///< Of `fibonacci` and `orbit`.
+  std::int64_t count = 24;    ///< Of `fibonacci` and `orbit`, and of a camera's path.
   double elevation_deg = 15;  ///< Of `orbit`, above the horizon.
   double fov_deg = 30;        ///< Vertical angle of view; 0 for parallel projection.
   double margin = 0;          ///< Free border around the sphere, of its radius.

@@ -55,8 +55,7 @@ MetricStage metric_stage(const SimplifyOptions& options, std::uint64_t target, s
 ViewedModel viewed_model(const Model& model, const ViewOptions& options, Context& context) {
   ViewedModel viewed;
   viewed.pose = rest_pose(model);
-  viewed.scene =
-      make_render_scene(model, viewed.pose, context, nullptr, SceneTextures::base_and_finish);
+  viewed.scene = make_render_scene(model, viewed.pose, context, nullptr, SceneTextures::base_and_finish);
   viewed.views = views_of(options, model, viewed.pose, viewed.scene.sphere);
   return viewed;
 }

@@ -51,8 +51,8 @@ struct Batch {
   std::vector<std::size_t> mesh_index;
   std::vector<const TriMesh*> meshes;
   std::vector<double> scales;
-  std::vector<const VertexField*> importance;  // null where there is none
-  std::vector<const VertexField*> weights;     // of quadrics: importance, and how much is seen
+  std::vector<const VertexField*> importance;      // null where there is none
+  std::vector<const VertexField*> weights;         // of quadrics: importance, and how much is seen
   std::vector<const std::vector<FaceId>*> hidden;  // empty if nothing is
   std::uint64_t triangles = 0;                     // hidden ones among them
 
@@ -144,8 +144,8 @@ void drop_hidden(const Batch& batch, CollapseRecord& record) {
 CollapseOutcome collapse_batch(const Model& model, const Batch& batch, std::uint64_t target,
                                const MetricStage& stage, const ViewedModel& viewed,
                                const SimplifyOptions& options, double diagonal, Context& context) {
-  CollapseState state = make_collapse_state(batch.meshes, batch.scales, batch.weights, batch.hidden,
-                                            diagonal, options, context);
+  CollapseState state = make_collapse_state(batch.meshes, batch.scales, batch.weights, batch.hidden, diagonal,
+                                            options, context);
   const double bound = error_bound(options, diagonal);
   CollapseOutcome outcome;
   drop_hidden(batch, outcome.record);

@@ -44,8 +44,8 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
       tie_(is_image() ? kImageTie : kEntropyTie) {
   if (static_cast<double>(viewed_.views.size()) * size_ * size_ > kMostPixels) {
     throw Error(ErrorKind::limit,
-                fmt::format("{} views of {} × {} pixels are more than a metric looks at", viewed_.views.size(),
-                            size_, size_),
+                fmt::format("{} views of {} × {} pixels are more than a metric looks at",
+                            viewed_.views.size(), size_, size_),
                 "--view-size", "take fewer or smaller views");
   }
   if (content_ == PixelContent::region)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "fovea/base/context.h"
@@ -28,6 +29,9 @@ class ImageSights {
     UvSlopes slopes;  ///< In a picture in which the model is one pixel long.
     double counts = 1;
   };
+  /// Looks that are known; their slopes are those of pictures of one pixel of `pixels`.
+  ImageSights(std::vector<Sight> sights, std::vector<double> pixels)
+      : sights_(std::move(sights)), pixels_(std::move(pixels)) {}
   const std::vector<Sight>& all() const { return sights_; }
   const std::vector<double>& pixels() const { return pixels_; }
 

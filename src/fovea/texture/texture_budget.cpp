@@ -42,7 +42,8 @@ double lit_weight(const TexelMeaning& meaning) {
 TextureBudget::TextureBudget(const Model& model, std::span<const ImageChange::State> files,
                              std::span<const Atlas> atlases, std::span<const WantedImage> limits,
                              const ImageOutputOptions& options, std::span<const VertexField> field,
-                             std::vector<double> pixels, double bytes, Context& context)
+                             std::vector<double> pixels, double bytes, Context& context,
+                             const ImageViewers* viewers)
     : model_(model),
       files_(files),
       limits_(limits.begin(), limits.end()),
@@ -51,11 +52,13 @@ TextureBudget::TextureBudget(const Model& model, std::span<const ImageChange::St
       most_bytes_(bytes),
       options_(options),
       context_(context),
+      viewers_(viewers),
       uses_(image_uses(model)) {
   for (const EncodedImage& image : model.images) kept_bytes_ += static_cast<double>(image.bytes.size());
   for (std::size_t a = 0; a < atlases.size(); ++a) {
     context.advance_or_throw("sizes", static_cast<double>(a) / static_cast<double>(atlases.size()));
-    const double area = seen_area(model, atlases[a], field);
+    const double area = viewers == nullptr ? seen_area(model, atlases[a], field)
+                                           : static_cast<double>(viewers->sights(atlases[a]).size() + 1);
     std::vector<Candidate> found;
     for (const int image : atlases[a].images) {
       const auto i = static_cast<std::size_t>(image);
@@ -73,7 +76,16 @@ TextureBudget::TextureBudget(const Model& model, std::span<const ImageChange::St
 }
 
 ImageSights TextureBudget::sights(const Candidate& candidate) const {
+  if (viewers_ != nullptr) return {viewers_->sights(*candidate.atlas), pixels_};
   return {model_, atlas_faces(model_, *candidate.atlas), field_, pixels_};
+}
+
+Image8 TextureBudget::decoded(std::size_t image) const {
+  return without_idle_alpha(decode_image(model_.images[image].bytes), uses_[image]);
+}
+
+Image8 TextureBudget::shown(std::size_t image, Image8 picture) const {
+  return viewers_ == nullptr ? std::move(picture) : viewers_->shown(image, picture);
 }
 
 void TextureBudget::measure(Candidate& candidate) const {
@@ -82,13 +94,13 @@ void TextureBudget::measure(Candidate& candidate) const {
   const ImageUse& use = uses_[candidate.image];
   const auto bytes = static_cast<double>(file.bytes);
   try {
-    const Image8 image = without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use);
+    const Image8 image = decoded(candidate.image);
     candidate.limits = {use, output_format(image, file.mime_type, options_), limit.width, limit.height,
                         std::min(bytes, most_bytes_ + 1)};
     const std::vector<AtlasFace> faces = known_faces(candidate);
     const ImageSights seen = sights(candidate);
-    candidate.ways =
-        image_ways(image, candidate.limits, faces, ImageLoss(seen, image, use, context_), context_);
+    const ImageLoss loss(seen, image, use, context_);
+    candidate.ways = image_ways(shown(candidate.image, image), candidate.limits, faces, loss, context_);
     if (limit.stays)
       candidate.ways.push_back(
           {limit.width, limit.height, std::nullopt, bytes, std::vector<double>(pixels_.size())});
@@ -100,13 +112,13 @@ void TextureBudget::measure(Candidate& candidate) const {
 
 void TextureBudget::refine(Candidate& candidate, double bytes, std::optional<int> halvings) const {
   const ImageUse& use = uses_[candidate.image];
-  const Image8 image = without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use);
+  const Image8 image = decoded(candidate.image);
   const ImageSights seen = sights(candidate);
   std::vector<ImageWay> near;
   for (const ImageWay& way : candidate.ways)
     if (!halvings || is_halved(candidate, way, *halvings)) near.push_back(way);
-  for (ImageWay& more : finer_ways(near, bytes, image, candidate.limits, known_faces(candidate),
-                                   ImageLoss(seen, image, use, context_), context_))
+  for (ImageWay& more : finer_ways(near, bytes, shown(candidate.image, image), candidate.limits,
+                                   known_faces(candidate), ImageLoss(seen, image, use, context_), context_))
     candidate.ways.push_back(std::move(more));
 }
 
@@ -209,12 +221,12 @@ void TextureBudget::fill_up(Numbers& numbers, double bytes) {
     Candidate& candidate = candidates_[c];
     const ImageWay now = candidate.ways[numbers[c]];
     const ImageUse& use = uses_[candidate.image];
-    const Image8 image = without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use);
+    const Image8 image = decoded(candidate.image);
     const ImageSights seen = sights(candidate);
     const double most = std::min(now.bytes + left, candidate.limits.most_bytes - 1);
     std::optional<ImageWay> fuller =
-        fullest_way(now, candidate.ways, most, image, candidate.limits, known_faces(candidate),
-                    ImageLoss(seen, image, use, context_), context_);
+        fullest_way(now, candidate.ways, most, shown(candidate.image, image), candidate.limits,
+                    known_faces(candidate), ImageLoss(seen, image, use, context_), context_);
     if (!fuller) continue;
     left -= fuller->bytes - now.bytes;
     numbers[c] = candidate.ways.size();
@@ -284,8 +296,7 @@ std::vector<WantedImage> TextureBudget::choose_alike(double bytes, int halvings)
     const int width = std::max(1, file.width >> halvings), height = std::max(1, file.height >> halvings);
     if (width > candidate.limits.width || height > candidate.limits.height) return {};
     pictures.push_back(
-        resized_for_way(without_idle_alpha(decode_image(model_.images[candidate.image].bytes), use), width,
-                        height, use, context_));
+        resized_for_way(shown(candidate.image, decoded(candidate.image)), width, height, use, context_));
   }
   std::vector<std::optional<ImageOutput>> best;
   int fits = 0, too_much = kAlikeSteps;
@@ -353,8 +364,8 @@ std::vector<std::uint8_t> TextureBudget::encoded(std::size_t image, const ImageW
   const auto [known, is_new] = sized_.try_emplace({image, way.width, way.height, fill});
   if (is_new) {
     const ImageUse& use = uses_[image];
-    known->second = sized_for_way(without_idle_alpha(decode_image(file.bytes), use), way, use,
-                                  known_faces(*find(image)), context_);
+    known->second =
+        sized_for_way(shown(image, decoded(image)), way, use, known_faces(*find(image)), context_);
   }
   return encode_texture(known->second, format, quality);
 }

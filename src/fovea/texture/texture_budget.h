@@ -15,6 +15,7 @@
 #include "fovea/texture/image_loss.h"
 #include "fovea/texture/image_output.h"
 #include "fovea/texture/image_use.h"
+#include "fovea/texture/image_viewers.h"
 #include "fovea/texture/image_ways.h"
 
 // Shared inside Fovea, not installed.
@@ -34,11 +35,12 @@ class TextureBudget {
  public:
   /// Images are those of the model; none may take as much as its file did before, in `files` [#images], whose
   /// formats stay. Those that materials read in different ways take what they take. `pixels` as for
-  /// ImageSights. Refers to the model, the files and the atlases. Throws Error(cancelled).
+  /// ImageSights; if `viewers` are given, which must outlive this, they look instead, and what they cannot
+  /// see is not stored. Refers to the model, the files and the atlases. Throws Error(cancelled).
   TextureBudget(const Model& model, std::span<const ImageChange::State> files, std::span<const Atlas> atlases,
                 std::span<const WantedImage> limits, const ImageOutputOptions& options,
                 std::span<const VertexField> field, std::vector<double> pixels, double bytes,
-                Context& context);
+                Context& context, const ImageViewers* viewers = nullptr);
 
   /// [#images] Of those whose files fit into so many bytes, at most those of the constructor, what loses
   /// least; the fewest bytes of all if none do. With `refine` more qualities are tried near those: some
@@ -82,6 +84,9 @@ class TextureBudget {
   using Sums = std::vector<double>;          // [#pixels × 2] of losses: of colours, and of all
 
   ImageSights sights(const Candidate& candidate) const;
+  Image8 decoded(std::size_t image) const;
+  /// What files are made of.
+  Image8 shown(std::size_t image, Image8 picture) const;
   /// All triangles that show it; none if they are not known.
   std::vector<AtlasFace> known_faces(const Candidate& candidate) const;
   void measure(Candidate& candidate) const;
@@ -113,6 +118,7 @@ class TextureBudget {
   double most_bytes_;
   ImageOutputOptions options_;
   Context& context_;
+  const ImageViewers* viewers_;
   std::vector<ImageUse> uses_;
   std::vector<Candidate> candidates_;
   double kept_bytes_ = 0;

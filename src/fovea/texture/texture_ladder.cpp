@@ -37,10 +37,10 @@ struct TextureLadders::State {
         files(states_of(model)),
         atlases(find_atlases(model)),
         budget(model, files, atlases, limits_of(files, options.output), options.output, {},
-               sights_of(options.shown_pixels),
+               options.viewers != nullptr ? std::vector<double>{1} : sights_of(options.shown_pixels),
                options.most_bytes > 0 ? static_cast<double>(options.most_bytes)
                                       : std::numeric_limits<double>::max(),
-               context) {
+               context, options.viewers) {
     for (std::size_t i = 0; i < model.images.size(); ++i) rungs.push_back(rungs_of(i));
   }
 

@@ -12,10 +12,13 @@
 
 namespace fovea {
 
+struct ImageViewers;  // image_viewers.h, inside Fovea
+
 struct TextureLadderOptions {
   ImageOutputOptions output;
-  double shown_pixels = 512;     ///< How long the model is in pictures.
-  std::uint64_t most_bytes = 0;  ///< No file that takes more will be asked for; 0 for any.
+  double shown_pixels = 512;              ///< How long the model is in pictures.
+  std::uint64_t most_bytes = 0;           ///< No file that takes more will be asked for; 0 for any.
+  const ImageViewers* viewers = nullptr;  ///< Who looks, if not all from around; must outlive the ladders.
 };
 
 /// One of the ways to store an image: none takes as little and loses as little.
