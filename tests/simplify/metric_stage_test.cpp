@@ -169,6 +169,23 @@ TEST(MetricStage, TrianglesGoWhereACameraLooks) {
   EXPECT_LT(run_stages(model, options).model.meshes[1].surface.face_count(), 0.6 * 2048);
 }
 
+TEST(MetricStage, EvenExposureIsQuadricsAloneAtFirst) {
+  SimplifyOptions options;
+  options.ratio = 0.3;
+  options.metric_from = 2;
+  options.even_exposure = true;
+  const Model model = ball_in_ball();
+  const SimplifyResult even = run_stages(model, options);
+  EXPECT_EQ(even.metric, Metric::image);
+  options.metric = Metric::quadric;
+  options.metric_from.reset();
+  options.ratio = 0.61;
+  const SimplifyResult quadric = run_stages(model, options);
+  ASSERT_GT(quadric.record.steps.size(), 200u);
+  for (std::size_t i = 0; i < quadric.record.steps.size(); ++i)
+    EXPECT_EQ(even.record.steps[i].removed, quadric.record.steps[i].removed) << i;
+}
+
 TEST(MetricStage, HiddenTrianglesAreDroppedFirstAndTheRecordSaysSo) {
   const Model model = ball_in_ball();
   SimplifyOptions options;

@@ -79,6 +79,8 @@ SimplifyOptions simplify_options(const LodChainOptions& options, const std::vect
   const std::uint64_t last = targets.back(),
                       before = targets.size() > 1 ? targets[targets.size() - 2] : total;
   simple.triangles = static_cast<std::int64_t>(last);
+  // Distances follow from the largest errors.
+  if (simple.metric == Metric::automatic) simple.even_exposure = true;
   if (simple.metric == Metric::automatic && last > 0)
     simple.metric_from = std::clamp(static_cast<double>(before) / static_cast<double>(last), 1.0, 2.0);
   return simple;

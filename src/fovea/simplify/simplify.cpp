@@ -329,6 +329,10 @@ OptionList describe(SimplifyOptions& o) {
        &o.view_size, "pixels", 16, 2048},
       {"image-pass", "What the metric image compares: base colour alone, or under light.",
        choice(o.image_pass, {"base-color", "lit"}), ""},
+      {"even-exposure",
+       "By the metric image, keep what is hardly seen as near to the original as the rest; pictures are "
+       "farther off then.",
+       &o.even_exposure, ""},
   };
   for (const OptionList& more : {describe(o.views), describe(o.regions)})
     list.insert(list.end(), more.begin(), more.end());
@@ -343,7 +347,7 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
   Importance weights = importance;
   if (const MetricStage stage = stage_of(model, options); stage.metric != Metric::quadric) {
     viewed = viewed_model(model, options.views, context);
-    if (stage.is_by_exposure())
+    if (stage.is_by_exposure() && !(stage.is_by_views() && options.even_exposure))
       weights = product(importance, exposed_importance(model, viewed, options, stage, context));
   }
   const auto hidden =

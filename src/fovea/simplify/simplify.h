@@ -68,6 +68,9 @@ struct SimplifyOptions {
   /// Pixels along each side of a view. None: 256, or fewer for the image of so few triangles that they do.
   std::optional<std::int64_t> view_size;
   ImagePass image_pass = ImagePass::lit;
+  /// Of the image: what views hardly see counts as much in the quadric error as the rest. So the largest
+  /// distance stays less, and pictures are farther off.
+  bool even_exposure = false;
   SegmentOptions regions;  ///< Of textures, for `Metric::entropy`.
   /// Drop the triangles that none of `views` sees (hidden_faces.h), before anything collapses.
   bool cull_hidden = false;
