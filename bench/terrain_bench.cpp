@@ -281,8 +281,7 @@ class Experiment {
       place(2, c) = column.z;
     }
     model.nodes.push_back(node);
-    if (!model.scenes.empty())
-      model.scenes[0].nodes.push_back(static_cast<int>(model.nodes.size()) - 1);
+    if (!model.scenes.empty()) model.scenes[0].nodes.push_back(static_cast<int>(model.nodes.size()) - 1);
     return model;
   }
   /// So many triangles of a land with a camera, its picture deciding about all.

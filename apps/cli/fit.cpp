@@ -44,7 +44,9 @@ class Fit : public Verb {
          {"fovea fit chair.glb -o chair-same.glb --match ms-ssim=0.98@512",
           "The smallest that still looks the same at 512 pixels."},
          {"fovea fit helmet.glb -o h.glb --bytes 1MB --texture-format webp --curve curve.json",
-          "With WebP; and what any number of bytes would give."}}};
+          "With WebP; and what any number of bytes would give."},
+         {"fovea fit city.glb -o city-lean.glb --bytes 2MB --views cameras",
+          "Only what the model's own cameras see counts, along their paths if they are animated."}}};
   }
 
   void declare(Arguments& arguments) override {

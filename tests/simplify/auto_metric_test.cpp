@@ -17,7 +17,7 @@ TEST(AutoMetric, TakesTheTrialThatLooksBest) {
   options.ratio = 0.1;
   Context context;
   const AutoMetric found = choose_metric(model, options, {}, context);
-  ASSERT_EQ(found.trials.size(), 4u);
+  ASSERT_EQ(found.trials.size(), 5u);
   for (const MetricTrial& trial : found.trials) EXPECT_GE(trial.flip, found.trials[found.best].flip);
   // What is told is what the options give.
   const MetricTrial& best = found.trials[found.best];
@@ -31,6 +31,7 @@ TEST(AutoMetric, WhatWasSaidOfTheMetricDoesNotCount) {
   options.triangles = other.triangles = 100;
   other.metric = Metric::entropy;
   other.metric_from = 3;
+  other.even_exposure = true;
   Context context;
   const AutoMetric a = choose_metric(model, options, {}, context),
                    b = choose_metric(model, other, {}, context);

@@ -437,7 +437,7 @@ class BudgetFit::Finder {
     for (int i = 0; i < kTries && triangles > 0; ++i) {
       SimplifyOptions simplify_options;
       simplify_options.triangles = static_cast<std::int64_t>(triangles);
-      if (options_.views.set == ViewSet::cameras) simplify_options.views.set = ViewSet::cameras;
+      if (options_.views.set == ViewSet::cameras) simplify_options.views = options_.views;
       SimplifyResult simplified = simplify(ladders_.original(), simplify_options, {}, ladders_.scratch());
       if (simplified.stop == StopReason::cancelled) throw Error(ErrorKind::cancelled, "cancelled");
       if (simplified.metric == Metric::quadric) return;  // as the record has them

@@ -44,7 +44,7 @@ MeshLadderOptions mesh_options(const Model& model, const FitOptions& options) {
   MeshLadderOptions result{options.triangles, options.gives == FitGives::texels,
                            options.ladders == FitLadderSet::separate && meshes <= kMostLadders};
   result.fewer = fewer_of(result.fewer, options);
-  result.by_cameras = options.views.set == ViewSet::cameras;
+  if (options.views.set == ViewSet::cameras) result.cameras = options.views;
   return result;
 }
 

@@ -15,17 +15,17 @@ constexpr double kFewest = 0.005;
 /// From so many triangles on pictures decide which go (simplify.h); up to there quadrics do as well.
 constexpr double kMostByPictures = 12000;
 
-CollapseRecord simplified(const Model& model, bool by_cameras, Context& context) {
+CollapseRecord simplified(const Model& model, const std::optional<ViewOptions>& cameras, Context& context) {
   const std::uint64_t total = counts(model).triangles;
   SimplifyOptions options;
   options.ratio = kFewest;
   const double fewest = std::max(1.0, kFewest * static_cast<double>(total));
-  const double by_pictures = by_cameras ? static_cast<double>(total) : kMostByPictures;
+  const double by_pictures = cameras ? static_cast<double>(total) : kMostByPictures;
   if (fewest < by_pictures) {
     options.metric = Metric::image;
     options.metric_from = by_pictures / fewest;
   }
-  if (by_cameras) options.views.set = ViewSet::cameras;
+  if (cameras) options.views = *cameras;
   return simplify(model, options, {}, context).record;
 }
 
@@ -45,7 +45,7 @@ std::vector<std::uint32_t> ladders_of(const Model& model, bool separate) {
 MeshLadders::MeshLadders(const Model& model, const MeshLadderOptions& options, const FileForm& form,
                          Context& context)
     : model_(model) {
-  if (!options.whole && counts(model).triangles > 0) record_ = simplified(model, options.by_cameras, context);
+  if (!options.whole && counts(model).triangles > 0) record_ = simplified(model, options.cameras, context);
   const std::vector<std::uint32_t> ladders = ladders_of(model, options.separate);
   for (std::size_t m = 0; m < ladders.size(); ++m) {
     if (ladders[m] == kInvalid) continue;

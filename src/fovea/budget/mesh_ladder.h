@@ -9,16 +9,17 @@
 #include "fovea/base/context.h"
 #include "fovea/io/file_form.h"
 #include "fovea/model/model.h"
+#include "fovea/render/view.h"
 #include "fovea/simplify/record.h"
 
 namespace fovea {
 
 struct MeshLadderOptions {
-  std::optional<std::int64_t> triangles;  ///< At most, over all meshes.
-  bool whole = false;                     ///< They keep all of their triangles.
-  bool separate = false;                  ///< A ladder for each mesh, instead of one for all.
-  double fewer = 0.7;                     ///< Triangles of a rung, of those of the one before.
-  bool by_cameras = false;                ///< Only the model's own cameras look at it.
+  std::optional<std::int64_t> triangles;    ///< At most, over all meshes.
+  bool whole = false;                       ///< They keep all of their triangles.
+  bool separate = false;                    ///< A ladder for each mesh, instead of one for all.
+  double fewer = 0.7;                       ///< Triangles of a rung, of those of the one before.
+  std::optional<ViewOptions> cameras = {};  ///< ViewSet::cameras, if only these look at it.
 };
 
 /// A level of the meshes of one ladder.

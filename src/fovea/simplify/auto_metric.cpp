@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "fovea/base/error.h"
 #include "fovea/simplify/auto_saliency.h"
@@ -21,7 +22,12 @@ AutoMetric choose_metric(const Model& model, const SimplifyOptions& options, con
         MetricTrial{fmt::format("image from {:g} times the target", from), options});
     trial.options.metric = Metric::image;
     trial.options.metric_from = from;
+    trial.options.even_exposure = false;
   }
+  MetricTrial even = result.trials[1];
+  even.name = "image, hidden as near";
+  even.options.even_exposure = true;
+  result.trials.push_back(std::move(even));
   std::vector<Model> models;
   for (const MetricTrial& trial : result.trials) {
     context.advance_or_throw("choose metric",

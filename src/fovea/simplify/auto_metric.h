@@ -22,12 +22,13 @@ struct AutoMetric {
   double seconds = 0;  ///< What choosing cost.
 };
 
-/// Chooses the metric for one model and target by simplifying it with quadrics, and with pictures deciding
-/// from 2, 4 and 16 times the target on, and comparing small pictures with the original. Ties go to the
-/// earlier. `options` say all else; what they say of the metric does not count.
+/// Chooses the metric for one model and target by simplifying it with quadrics, with pictures deciding from
+/// 2, 4 and 16 times the target on, and from twice the target on with what is hidden kept as near as the rest
+/// (`even_exposure`), and comparing small pictures with the original. Ties go to the earlier. `options` say
+/// all else; what they say of the metric does not count.
 ///
-/// Cost: four times `simplify`, most of it that of the last, and pictures. Throws what `simplify` throws, and
-/// Error(cancelled).
+/// Cost: five times `simplify`, most of it that from 16 times the target on, and pictures. Throws what
+/// `simplify` throws, and Error(cancelled).
 AutoMetric choose_metric(const Model& model, const SimplifyOptions& options, const Importance& importance,
                          Context& context);
 
