@@ -60,8 +60,9 @@ void need_format(Arguments& arguments, const WriteOptions& options) {
 }
 
 void need_views(Arguments& arguments, const ViewOptions& views) {
-  arguments.need({{"view-count"}, "--views fibonacci or orbit", [&views] {
-                    return views.set == ViewSet::fibonacci || views.set == ViewSet::orbit;
+  arguments.need({{"view-count"}, "--views fibonacci, orbit or cameras", [&views] {
+                    return views.set == ViewSet::fibonacci || views.set == ViewSet::orbit ||
+                           views.set == ViewSet::cameras;
                   }});
   arguments.need({{"elevation"}, "--views orbit", [&views] { return views.set == ViewSet::orbit; }});
 }

@@ -159,7 +159,7 @@ class Simplify : public Verb {
     arguments.need({{"metric-from"}, "--metric image, entropy or polygon-entropy", [is] {
                       return !is({Metric::quadric, Metric::visibility});
                     }});
-    arguments.need({{"image-pass"}, "--metric image", [is] {
+    arguments.need({{"image-pass", "even-exposure"}, "--metric image", [is] {
                       return is({Metric::automatic, Metric::image});
                     }});
     arguments.need({{"view-size"}, "a --metric by views", [is] { return !is({Metric::quadric}); }});

@@ -133,11 +133,12 @@ TEST(Usage, OptionsThatNeedOthers) {
   const std::pair<std::vector<std::string>, const char*> cases[] = {
       {{"--position-bits", "14"}, "--position-bits needs --quantize"},
       {{"--metric", "quadric", "--image-pass", "lit"}, "--image-pass needs --metric image"},
+      {{"--metric", "visibility", "--even-exposure"}, "--even-exposure needs --metric image"},
       {{"--metric", "visibility", "--metric-from", "2"}, "--metric-from needs --metric image"},
       {{"--metric", "quadric", "--views", "cube"}, "--views needs a --metric by views"},
       {{"--region-k", "9"}, "--region-k needs --metric entropy"},
       {{"--key-poses", "4"}, "--key-poses needs --saliency"},
-      {{"--view-count", "4"}, "--view-count needs --views fibonacci or orbit"}};
+      {{"--view-count", "4"}, "--view-count needs --views fibonacci, orbit or cameras"}};
   for (const auto& [more, message] : cases) {
     std::vector<std::string> words{"simplify", "a.glb", "-o", "b.glb", "--ratio", "0.1"};
     words.insert(words.end(), more.begin(), more.end());

@@ -111,7 +111,9 @@ TEST_F(RenderVerb, RefusesWhatItCannotDo) {
   const Case cases[] = {
       {{}, 2, "for example -o picture.png"},
       {{"-o", out("x.glb")}, 2, "pictures are not written as .glb"},
-      {{"-o", out("x.png"), "--view-count", "5"}, 2, "--view-count needs --views fibonacci or orbit"},
+      {{"-o", out("x.png"), "--view-count", "5"},
+       2,
+       "--view-count needs --views fibonacci, orbit or cameras"},
       {{"-o", out("x.png"), "--pass", "field"}, 2, "--field"},
       {{"-o", out("x.png"), "--field", "_HEAT"}, 2, "--pass field"},
       {{"-o", out("x.png"), "--pass", "field", "--field", "_HEAT"},
