@@ -150,7 +150,7 @@ class Simplify : public Verb {
       return std::find(metrics.begin(), metrics.end(), options_.metric) != metrics.end();
     };
     need_format(arguments, write_options_);
-    arguments.need({{"metric", "metric-from", "saliency"},
+    arguments.need({{"metric", "metric-from", "even-exposure", "saliency"},
                     "neither --fast nor --best",
                     [this] { return !fast_ && !best_; },
                     "they say which"});

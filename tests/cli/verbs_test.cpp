@@ -266,6 +266,8 @@ TEST_F(Verbs, SimplifyIsFastOrAtItsBest) {
   for (const std::vector<std::string>& wrong :
        {std::vector<std::string>{"--fast", "--best", "--ratio", "0.1"},
         {"--best", "--metric", "image", "--ratio", "0.1"},
+        {"--best", "--even-exposure", "--ratio", "0.1"},
+        {"--fast", "--even-exposure", "--ratio", "0.1"},
         {"--fast", "--saliency", "auto", "--ratio", "0.1"},
         {"--best", "--bytes", "9KB"},
         {"--best", "--per-mesh", "--ratio", "0.1"}})
