@@ -32,11 +32,12 @@ constexpr int kLongestBaked = 4096;
 /// Part of the texels that may show two places at once; rasterisation alone makes some.
 constexpr double kMostConflicts = 5e-3;
 
-/// So that it is baked at the size that it had, within reason.
-int oversampling(const WarpedImage& image) {
+/// So that it is baked at the size that it had, within reason, or at a `part` of that.
+int oversampling(const WarpedImage& image, int part) {
   const int longest = std::max(image.width, image.height);
   const int wanted = (image.image->width + image.width - 1) / image.width;
-  return std::clamp(std::min(wanted, kLongestBaked / longest), kLeastOversampling, kMostOversampling);
+  const int best = std::clamp(std::min(wanted, kLongestBaked / longest), kLeastOversampling, kMostOversampling);
+  return std::max(best / part, kLeastOversampling);
 }
 
 /// Part of the drawn texels that show more than one place of the old image, a texel or more apart.
@@ -173,7 +174,7 @@ class Warper {
     for (std::size_t first = 0; first < images_.size(); ++first) {
       if (warp.images[first].width > 0) continue;
       const WarpedImage& image = images_[first];
-      const int factor = std::max(oversampling(image) / part, kLeastOversampling);
+      const int factor = oversampling(image, part);
       const int width = factor * image.width, height = factor * image.height;
       if (!origins || origins->width != width || origins->height != height) {
         origins = texel_origins(warp.to, from_, turns, width, height, context_);
@@ -256,7 +257,10 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
     found->floor = asked.floor;
     if (!measured || found->loss < kGoodLoss * plain_loss) break;
   }
-  if (found && warper.bake(*found, 1, measured)) best = std::move(*found);
+  const bool is_baked = std::ranges::all_of(images, [](const WarpedImage& image) {
+    return oversampling(image, kTrialPart) == oversampling(image, 1);
+  });
+  if (found && (is_baked || warper.bake(*found, 1, measured))) best = std::move(*found);
   best.plain_loss = plain_loss;
   best.maps = warper.maps();
   best.importance = std::move(importance);

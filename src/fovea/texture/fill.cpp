@@ -121,24 +121,34 @@ std::vector<std::size_t> border(const Image8& image, std::span<const std::uint8_
   return found;
 }
 
-/// Gives each of `texels` the mean of the known ones around it, nearer ones twice.
-void give_means(Image8& image, std::span<const std::size_t> texels, std::span<const std::uint8_t> known,
-                const Context& context) {
-  assert(image.channels <= kMostChannels);
+/// Gives each of `texels` of all images the mean of the known ones around it, nearer ones twice.
+void give_means(std::span<Image8> images, std::span<const std::size_t> texels,
+                std::span<const std::uint8_t> known, const Context& context) {
   constexpr std::size_t kGrain = 4096;
-  const auto channels = static_cast<std::size_t>(image.channels),
-             width = static_cast<std::size_t>(image.width);
+  struct Neighbour {
+    std::size_t texel;
+    int weight;
+  };
+  const auto width = static_cast<std::size_t>(images[0].width);
   const auto give = [&](std::size_t t) {
-    std::array<int, kMostChannels> sum{};
-    int count = 0;
-    for_around(image, t, [&](std::size_t n) {
+    std::array<Neighbour, 8> around;
+    std::size_t count = 0;
+    int weights = 0;
+    for_around(images[0], t, [&](std::size_t n) {
       if (known[n] != kKnown) return;
-      const int weight = n % width == t % width || n / width == t / width ? 2 : 1;
-      count += weight;
-      for (std::size_t k = 0; k < channels; ++k) sum[k] += weight * image.pixels[n * channels + k];
+      around[count] = {n, n % width == t % width || n / width == t / width ? 2 : 1};
+      weights += around[count++].weight;
     });
-    for (std::size_t k = 0; k < channels; ++k)
-      image.pixels[t * channels + k] = static_cast<std::uint8_t>((sum[k] + count / 2) / count);
+    for (Image8& image : images) {
+      assert(image.channels <= kMostChannels);
+      const auto channels = static_cast<std::size_t>(image.channels);
+      for (std::size_t k = 0; k < channels; ++k) {
+        int sum = weights / 2;  // rounds
+        for (std::size_t i = 0; i < count; ++i)
+          sum += around[i].weight * image.pixels[around[i].texel * channels + k];
+        image.pixels[t * channels + k] = static_cast<std::uint8_t>(sum / weights);
+      }
+    }
   };
   parallel_for_or_throw(context, texels.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) give(texels[i]);
@@ -172,7 +182,7 @@ void fill_undrawn(std::span<Image8> images, std::span<const std::uint8_t> drawn,
   std::vector<std::size_t> ring = border(images[0], known, context);
   if (ring.empty()) return;
   for (int i = 0; i < kRings && !ring.empty(); ++i) {
-    for (Image8& image : images) give_means(image, ring, known, context);
+    give_means(images, ring, known, context);
     for (const std::size_t t : ring) known[t] = kKnown;
     if (i + 1 < kRings) ring = next_ring(images[0], ring, known);
   }
