@@ -130,8 +130,8 @@ class Experiment {
     options_.pass = Pass::base_color;
     options_.width = options_.height = kSize;
     picture_ = render(scene_, land.view, options_, context_).color;
-    weights_ = height_weights(land.field, scene_, std::span(&land.view, 1), kSize, kSize, context);
-    resolution_ = texel_resolution(scene_, image_of(scene_), std::span(&land.view, 1), kSize, kSize, context);
+    weights_ = height_weights(land.field, scene_, std::span(&land.view, 1), kSize, context);
+    resolution_ = texel_resolution(scene_, image_of(scene_), std::span(&land.view, 1), kSize, context);
   }
 
   double seen_share() const {

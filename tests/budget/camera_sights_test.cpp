@@ -49,6 +49,17 @@ TEST(CameraSights, EachPixelLooksWhereItIsShown) {
   }
 }
 
+TEST(CameraSights, AWideCameraLooksToBothSides) {
+  const Model model = test::textured(test::grid(4, 4), 1);
+  View wide = onto_middle(0.25);
+  wide.aspect = 2;
+  const std::vector<ImageSights::Sight> sights =
+      sights_by(model, {wide}, 64).sights(find_atlases(model).front());
+  ASSERT_EQ(sights.size(), 128u * 64u);
+  for (std::size_t i = 0; i < 128; ++i)
+    EXPECT_NEAR(sights[i].uv.x, 0.25 + 0.5 * (static_cast<double>(i) + 0.5) / 128, 1e-6);
+}
+
 TEST(CameraSights, FewerLooksOfManyPixels) {
   const Model model = test::textured(test::grid(4, 4), 1);
   const ImageViewers viewers = sights_by(model, {onto_middle(1), onto_middle(0.5)}, 512);

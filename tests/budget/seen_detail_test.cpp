@@ -22,7 +22,7 @@ View onto_square(double distance) {
 ResolutionMap seen(const Model& model, const std::vector<View>& views, int size) {
   Context context;
   const RenderScene scene = make_render_scene(model, rest_pose(model), context);
-  return texel_resolution(scene, 0, views, size, size, context);
+  return texel_resolution(scene, 0, views, size, context);
 }
 
 TEST(SeenDetail, PixelsPerTexel) {
@@ -82,7 +82,7 @@ TEST(SeenDetail, HeightsMoveMostFromTheSide) {
     const double angle = angle_deg * 3.14159265358979 / 180;
     const View view = view_from({0.5, 0.5 - 4 * std::sin(angle), 4 * std::cos(angle)}, {0.5, 0.5, 0}, 20);
     double sum = 0;
-    for (const float w : height_weights(*search.field, scene, std::vector{view}, 128, 128, context))
+    for (const float w : height_weights(*search.field, scene, std::vector{view}, 128, context))
       sum += static_cast<double>(w) * static_cast<double>(w);
     return sum;
   };
@@ -94,8 +94,7 @@ TEST(SeenDetail, HeightsMoveMostFromTheSide) {
         << angle;
   }
   View away = view_from({0.5, 0.5, 4}, {0.5, 0.5, 8}, 20);
-  for (const float w : height_weights(*search.field, scene, std::vector{away}, 64, 64, context))
-    EXPECT_EQ(w, 0);
+  for (const float w : height_weights(*search.field, scene, std::vector{away}, 64, context)) EXPECT_EQ(w, 0);
 }
 
 }  // namespace

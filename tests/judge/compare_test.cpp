@@ -84,6 +84,33 @@ TEST(Compare, TheForegroundDoesNotDependOnTheMargin) {
   EXPECT_NEAR(loose.mse_foreground, tight.mse_foreground, 0.15 * tight.mse_foreground);
 }
 
+TEST(Compare, PicturesOfACameraAreAsWideAsWhatItSees) {
+  Model model = test::model_of(test::icosphere(2));
+  model.cameras.emplace_back().aspect = 2;
+  Node node;
+  node.camera = 0;
+  node.translation = {0, 0, 3};
+  model.nodes.push_back(node);
+  CompareOptions options = quick();
+  options.views.set = ViewSet::cameras;
+  options.size = 40;
+  std::vector<std::array<int, 2>> sizes;
+  CompareObserver observer;
+  observer.pictures = [&](std::size_t, std::size_t, JudgedPass, const Picture& reference, const Picture& test,
+                          const Plane& flip) {
+    EXPECT_EQ(test.color.width, reference.color.width);
+    EXPECT_EQ(flip.width, reference.color.width);
+    sizes.push_back({reference.color.width, reference.color.height});
+  };
+  observer.distances = [&](std::size_t, std::size_t, const Picture& heat) {
+    sizes.push_back({heat.color.width, heat.color.height});
+  };
+  const Model* const tests[] = {&model};
+  Context context;
+  compare(model, tests, options, context, observer);
+  EXPECT_EQ(sizes, (std::vector<std::array<int, 2>>(3, {80, 40})));
+}
+
 TEST(Compare, TheSameForAnyThreads) {
   const Model model = test::model_of(test::torus(24, 12)), small = simplified(model, 0.2);
   Context one, three;

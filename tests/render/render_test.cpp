@@ -324,6 +324,30 @@ TEST(Render, OwnCamerasMustBeThere) {
   EXPECT_THROW(views_of(options, model, pose, scene.sphere), Error);
 }
 
+TEST(Render, ACameraIsAsWideAsItSaysOrAsAScreen) {
+  Model model = test::model_of(square(0, -1));
+  Camera wide, tall, parallel, odd;
+  wide.aspect = 2.5;
+  tall.aspect = 1e-9;
+  parallel.perspective = odd.perspective = false;
+  parallel.xmag = 3, parallel.ymag = 2;
+  odd.xmag = odd.ymag = 0;
+  model.cameras = {Camera{}, wide, tall, parallel, odd};
+  for (int i = 0; i < 5; ++i) {
+    Node node;
+    node.camera = i;
+    model.nodes.push_back(node);
+  }
+  const std::vector<View> views = camera_views(model, rest_pose(model));
+  ASSERT_EQ(views.size(), 5u);
+  EXPECT_EQ(picture_width(views[0], 90), 160);
+  EXPECT_EQ(picture_width(views[1], 100), 250);
+  EXPECT_EQ(picture_width(views[2], 160), 20) << "within reason";
+  EXPECT_EQ(picture_width(views[2], 1), 1);
+  EXPECT_EQ(picture_width(views[3], 100), 150);
+  EXPECT_EQ(picture_width(views[4], 100), 100);
+}
+
 TEST(Render, ACameraThatMovesIsAPath) {
   Model model = test::model_of(square(0, -1));
   for (const double x : {0.0, 7.0}) {

@@ -116,10 +116,10 @@ std::vector<std::pair<float, float>> weights(Metric metric, const Model& model, 
   SimplifyOptions options;
   options.metric = metric;
   options.views.set = set;
-  const ViewedModel viewed = viewed_model(model, options.views, context);
+  const MetricStage stage = metric_stage(options, 0, 0);
+  const ViewedModel viewed = viewed_model(model, options.views, stage, context);
   std::vector<std::pair<float, float>> found;
-  for (const VertexField& field :
-       exposed_importance(model, viewed, options, metric_stage(options, 0, 0), context)) {
+  for (const VertexField& field : exposed_importance(model, viewed, options, stage, context)) {
     const auto [least, most] = std::ranges::minmax(field.values());
     found.emplace_back(least, most);
   }

@@ -50,7 +50,8 @@ class ShownPlane {
   ShownPlane(const View& view, int size, const std::array<Vec3d, 3>& corners, const AtlasFace& face)
       : view_(view),
         to_plane_(2 * view.half_height / size),
-        half_(0.5 * size),
+        half_width_(0.5 * picture_width(view, size)),
+        half_height_(0.5 * size),
         origin_(corners[0]),
         uv_(face.uv) {
     const Vec3d a = corners[1] - corners[0], b = corners[2] - corners[0];
@@ -62,7 +63,7 @@ class ShownPlane {
 
   /// At a place of the picture, in pixels from its top left; none where the plane is not seen.
   std::optional<Vec2d> at(double x, double y) const {
-    const double right = (x - half_) * to_plane_, up = (half_ - y) * to_plane_;
+    const double right = (x - half_width_) * to_plane_, up = (half_height_ - y) * to_plane_;
     const Vec3d aside = view_.right * right + view_.up * up;
     const Vec3d from = view_.perspective ? view_.eye : view_.eye + aside;
     const Vec3d along = view_.perspective ? aside - view_.back : -view_.back;
@@ -75,7 +76,7 @@ class ShownPlane {
 
  private:
   const View& view_;
-  double to_plane_, half_;
+  double to_plane_, half_width_, half_height_;
   Vec3d origin_, normal_, to_s_, to_t_;
   std::array<Vec2d, 3> uv_;
 };
@@ -96,16 +97,18 @@ Looks find_looks(const Model& model, const RenderScene& scene, std::span<const V
   const std::vector<Atlas> atlases = find_atlases(model);
   std::vector<AtlasLook> faces;
   for (const Atlas& atlas : atlases) faces.emplace_back(model, atlas);
-  const double pixels = static_cast<double>(size) * size * static_cast<double>(views.size());
+  double pixels = 0;
+  for (const View& view : views) pixels += static_cast<double>(size) * picture_width(view, size);
   const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / kMostLooks))));
   Looks looks;
   for (const View& view : views) {
     if (context.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
-    const VisibleSurface surface = visible_surface(scene, view, size, size, context);
+    const int width = picture_width(view, size);
+    const VisibleSurface surface = visible_surface(scene, view, width, size, context);
     for (int y = stride / 2; y < size; y += stride) {
-      for (int x = stride / 2; x < size; x += stride) {
+      for (int x = stride / 2; x < width; x += stride) {
         const std::uint32_t triangle =
-            surface.triangle[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
+            surface.triangle[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                              static_cast<std::size_t>(x)];
         if (triangle == kInvalid) continue;
         const TriangleOrigin at = origin(scene, triangle);
@@ -134,7 +137,7 @@ std::map<std::size_t, ResolutionMap> find_resolutions(const Model& model, const 
     const EncodedImage* const image = scene.images[s].image;
     if (image == nullptr || scene.images[s].map->width() == 0) continue;
     const auto number = static_cast<std::size_t>(image - model.images.data());
-    ResolutionMap map = texel_resolution(scene, s, views, size, size, context);
+    ResolutionMap map = texel_resolution(scene, s, views, size, context);
     const auto [known, is_new] = found.try_emplace(number, map);
     if (is_new) continue;
     for (std::size_t i = 0; i < map.pixels_per_texel.size(); ++i)

@@ -12,7 +12,7 @@
 
 namespace fovea {
 
-/// What some views see of a model's images in pictures of `size` pixels square: each look is a pixel's, up to
+/// What some views see of a model's images in pictures `size` pixels high: each look is a pixel's, up to
 /// 32,768 over all pictures, and of an image only those waves are shown that take two pixels somewhere
 /// (wavelet.h; Horbelt, Balmelli and Vetterli 2001). `scene` is of the model and has its textures; the result
 /// refers to neither. Throws Error(cancelled). Cost: that of twice the pictures.

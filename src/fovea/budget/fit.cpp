@@ -512,7 +512,7 @@ Model BudgetFit::at(std::size_t point) { return finder_->at(point); }
 OptionList describe(FitOptions& o) {
   OptionList options{
       {"triangles", "Triangles to keep at most.", &o.triangles, "triangles", 1},
-      {"view-size", "Pixels along each side of the pictures that decide: how large the model will be seen.",
+      {"view-size", "Pixels along the height of the pictures that decide: how large the model will be seen.",
        &o.view_size, "pixels", 64, 4096},
       {"distortion", "What counts as lost in these pictures.",
        choice(o.distortion, {"mse", "ms-ssim", "flip"}), ""},

@@ -17,9 +17,10 @@ constexpr std::int64_t kMostKeptTexels = std::int64_t{1} << 26;
 
 constexpr std::array<Pass, 2> kPasses{Pass::base_color, Pass::lit};
 
-RenderOptions picture_options(const CompareOptions& options) {
+RenderOptions picture_options(const CompareOptions& options, const View& view) {
   RenderOptions picture;
-  picture.width = picture.height = options.size;
+  picture.width = picture_width(view, options.size);
+  picture.height = options.size;
   picture.samples = options.samples;
   return picture;
 }
@@ -41,7 +42,7 @@ PictureLoss::PictureLoss(const Model& original, const ViewOptions& views, int si
   parallel_for_or_throw(context, views_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       for (Picture& picture :
-           render_passes(scene_, views_[v], kPasses, picture_options(options_), context_)) {
+           render_passes(scene_, views_[v], kPasses, picture_options(options_, views_[v]), context_)) {
         Seen& seen = seen_[v].emplace_back(Seen{std::move(picture), std::nullopt, std::nullopt});
         if (distortion_ == Distortion::ms_ssim) seen.ssim.emplace(seen.picture.color);
         if (distortion_ == Distortion::flip) seen.flip.emplace(seen.picture.color);
@@ -85,7 +86,7 @@ PictureLoss::Loss PictureLoss::of(const Model& model) {
   parallel_for_or_throw(context_, views_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const std::vector<Picture> tests =
-          render_passes(scene, views_[v], kPasses, picture_options(options_), context_);
+          render_passes(scene, views_[v], kPasses, picture_options(options_, views_[v]), context_);
       const Plane mask = foreground(seen_[v][0].picture.coverage, tests[0].coverage);
       for (std::size_t p = 0; p < kPasses.size(); ++p) {
         const Seen& seen = seen_[v][p];

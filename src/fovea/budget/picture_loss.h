@@ -25,7 +25,7 @@ enum class Distortion {
 /// What models lose against one original, in the same pictures again and again.
 class PictureLoss {
  public:
-  /// Draws the original from `views`, `size` × `size` pixels, base colour and lit. It must outlive this.
+  /// Draws the original from `views`, `size` pixels high, base colour and lit. It must outlive this.
   /// Throws as `compare`.
   PictureLoss(const Model& original, const ViewOptions& views, int size, Distortion distortion,
               Context& context);

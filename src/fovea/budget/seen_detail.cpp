@@ -24,11 +24,11 @@ struct ScreenPoint {
 /// What one view sees of a scene.
 class Sight {
  public:
-  Sight(const RenderScene& scene, const View& view, int width, int height, const Context& context)
+  Sight(const RenderScene& scene, const View& view, int size, const Context& context)
       : view_(view),
-        width_(width),
-        height_(height),
-        surface_(visible_surface(scene, view, width, height, context)) {}
+        width_(picture_width(view, size)),
+        height_(size),
+        surface_(visible_surface(scene, view, width_, height_, context)) {}
 
   /// None behind the eye's plane.
   std::optional<ScreenPoint> project(Vec3d world) const {
@@ -208,19 +208,18 @@ void add_view(const RenderScene& scene, int image, const Sight& sight, MapCanvas
 }  // namespace
 
 ResolutionMap texel_resolution(const RenderScene& scene, std::size_t image, std::span<const View> views,
-                               int width, int height, const Context& context) {
+                               int size, const Context& context) {
   const MipMap& map = *scene.images[image].map;
   MapCanvas canvas(map.width(), map.height());
   for (const View& view : views) {
     if (context.cancelled()) throw Error(ErrorKind::cancelled, "cancelled");
-    add_view(scene, static_cast<int>(image), Sight(scene, view, width, height, context), canvas);
+    add_view(scene, static_cast<int>(image), Sight(scene, view, size, context), canvas);
   }
   return canvas.finish();
 }
 
 std::vector<float> height_weights(const HeightField& field, const RenderScene& scene,
-                                  std::span<const View> views, int width, int height,
-                                  const Context& context) {
+                                  std::span<const View> views, int size, const Context& context) {
   std::vector<double> squares(field.points.size(), 0.0);
   Vec3d up{};
   (field.up == 0 ? up.x : field.up == 1 ? up.y : up.z) = 1;
@@ -231,7 +230,7 @@ std::vector<float> height_weights(const HeightField& field, const RenderScene& s
   };
   const double cell = length(world(1, 1) - world(0, 0));
   for (const View& view : views) {
-    const Sight sight(scene, view, width, height, context);
+    const Sight sight(scene, view, size, context);
     const auto seen = [&](Vec3d p) { return sight.project(transform_point(field.to_world, p)); };
     parallel_for_or_throw(context, squares.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

@@ -20,12 +20,12 @@ struct ResolutionMap {
 };
 
 /// For each square of an image of a scene how many pixels a texel takes, along the line where it takes most,
-/// in that of the pictures of `width` × `height` pixels where it takes most. Triangles count whose material
+/// in that of the pictures of `size` pixels high where it takes most. Triangles count whose material
 /// shows the image and that face the eye, lie in the picture and are not hidden; squares next to them count
 /// as well, as filters reach there. Triangles that reach behind the eye's plane count as unseen. `image`:
 /// index into RenderScene::images. Throws Error(cancelled). Cost: that of the pictures' triangles.
 ResolutionMap texel_resolution(const RenderScene& scene, std::size_t image, std::span<const View> views,
-                               int width, int height, const Context& context);
+                               int size, const Context& context);
 
 /// [rows × columns] What a height that is wrong by 1 moves on the screen: the root of the sum, over all
 /// pictures and the pixels that a grid point stands for, of the square of how many pixels it moves there; 0
@@ -33,6 +33,6 @@ ResolutionMap texel_resolution(const RenderScene& scene, std::size_t image, std:
 /// of the screen, in squared pixels (Horbelt et al. 2001, figure 2). `scene` is of the model with the field.
 /// Throws Error(cancelled).
 std::vector<float> height_weights(const HeightField& field, const RenderScene& scene,
-                                  std::span<const View> views, int width, int height, const Context& context);
+                                  std::span<const View> views, int size, const Context& context);
 
 }  // namespace fovea

@@ -64,8 +64,11 @@ void show_distances(const Surface& reference, const std::vector<RenderScene>& te
     const std::vector<VertexField> fields =
         distance_fields(tests[t], surface, kHottestDistance * diagonal(reference), context);
     parallel_for(context, views.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v)
-        observer.distances(v, t, render(tests[t], views[v], options, context, fields));
+      for (std::size_t v = begin; v < end; ++v) {
+        RenderOptions own = options;
+        own.width = picture_width(views[v], own.height);
+        observer.distances(v, t, render(tests[t], views[v], own, context, fields));
+      }
     });
   }
 }
@@ -78,7 +81,7 @@ OptionList describe(CompareOptions& o) {
   options.insert(options.end(), views.begin(), views.end());
   options.insert(
       options.end(),
-      {{"view-size", "Pixels along each side of a view.", &o.size, "pixels", 11, 8192},
+      {{"view-size", "Pixels along the height of a view.", &o.size, "pixels", 11, 8192},
        {"pixels-per-degree", "Of the observer that FLIP stands for: 67 is a 4K screen at arm's length.",
         &o.pixels_per_degree, "", 1, 1000},
        {"distance-samples", "Points on each surface for the distance between them; 0 does not measure it.",
@@ -115,11 +118,13 @@ std::vector<Comparison> compare(const Model& reference, std::span<const Model* c
   for (Comparison& comparison : result) comparison.views.resize(views.size());
   if (observer.begin) observer.begin(views.size(), tests.size());
   RenderOptions render_options;
-  render_options.width = render_options.height = options.size;
+  render_options.height = options.size;
   render_options.samples = options.samples;
   const auto compare_view = [&](std::size_t v) {
     const auto draw = [&](const RenderScene& drawn) {
-      return render_passes(drawn, views[v], kPasses, render_options, context);
+      RenderOptions own = render_options;
+      own.width = picture_width(views[v], own.height);
+      return render_passes(drawn, views[v], kPasses, own, context);
     };
     std::vector<ReferencePicture> references;
     for (Picture& picture : draw(scene))

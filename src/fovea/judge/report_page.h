@@ -169,6 +169,9 @@ function step(by) { view = (view + by + D.views.length) % D.views.length; show()
 for (const [id, label] of modes) element("button", label, byId("modes")).onclick = () => { mode = id; show(); };
 byId("previous").onclick = () => step(-1);
 byId("next").onclick = () => step(1);
+byId("above").onload = () => {
+  byId("stage").style.aspectRatio = byId("above").naturalWidth + " / " + byId("above").naturalHeight;
+};
 byId("stage").onpointermove = (e) => {
   if (e.pointerType !== "mouse" && e.buttons === 0) return;
   const box = byId("stage").getBoundingClientRect();

@@ -54,7 +54,8 @@ std::vector<VertexField> exposure(const RenderScene& scene, std::size_t mesh_cou
                                   std::span<const View> views, int size, const Context& context) {
   std::vector<Pixels> pixels(scene.triangle_count);
   for (const View& view : views) {
-    for (const std::uint32_t triangle : visible_surface(scene, view, size, size, context).triangle) {
+    for (const std::uint32_t triangle :
+         visible_surface(scene, view, picture_width(view, size), size, context).triangle) {
       if (triangle != kInvalid) ++pixels[triangle].seen;
     }
     add_outlines(scene, view, size, context, pixels);

@@ -16,7 +16,7 @@ namespace fovea {
 /// vertex is large enough to tell: the mean over the mesh's other vertices. Of a mesh that is shown several
 /// times all showings count. [#meshes of the model][#V]; meshes that are not shown have an empty field.
 ///
-/// From pictures of `size` pixels square, with one sample per pixel. Cost: that of the pictures and O(#V +
+/// From pictures `size` pixels high, with one sample per pixel. Cost: that of the pictures and O(#V +
 /// #F) for each view. Throws Error(cancelled).
 std::vector<VertexField> exposure(const RenderScene& scene, std::size_t mesh_count,
                                   std::span<const View> views, int size, const Context& context);

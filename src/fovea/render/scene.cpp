@@ -194,6 +194,12 @@ RenderScene make_render_scene(const TriMesh& mesh) {
   return scene;
 }
 
+namespace {
+
+constexpr double kScreenAspect = 16.0 / 9, kMostAspect = 8;
+
+}  // namespace
+
 std::vector<View> camera_views(const Model& model, const Pose& pose) {
   std::vector<View> views;
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {
@@ -210,6 +216,8 @@ std::vector<View> camera_views(const Model& model, const Pose& pose) {
     view.perspective = camera.perspective;
     view.half_height = camera.perspective ? std::tan(0.5 * camera.yfov_rad) : camera.ymag;
     view.near = camera.znear;
+    const double own = camera.perspective ? camera.aspect.value_or(kScreenAspect) : camera.xmag / camera.ymag;
+    view.aspect = std::isfinite(own) ? std::clamp(own, 1 / kMostAspect, kMostAspect) : 1;
     views.push_back(view);
   }
   return views;

@@ -88,7 +88,8 @@ RenderScene make_render_scene(const Model& model, const Pose& pose, Context& con
 /// which must outlive it.
 RenderScene make_render_scene(const TriMesh& mesh);
 
-/// What the model's own cameras see, node by node; their aspect ratio gives way to the picture's.
+/// What the model's own cameras see, node by node. One whose aspect ratio is not given is taken for a wide
+/// screen's, 16 : 9.
 std::vector<View> camera_views(const Model& model, const Pose& pose);
 
 /// The views of a set onto a model in a pose; around the sphere, unless they are its own cameras. Of cameras

@@ -109,13 +109,14 @@ std::optional<double> least_stretch(Vec2d a, Vec2d b) {
 
 void add_view(const RenderScene& scene, const Looks& looks, const View& view, int size,
               const Context& context, std::vector<TexelDensity>& densities) {
-  const VisibleSurface surface = visible_surface(scene, view, size, size, context);
-  const Projection projection(view, {size, size, 1});
+  const int width = picture_width(view, size);
+  const VisibleSurface surface = visible_surface(scene, view, width, size, context);
+  const Projection projection(view, {width, size, 1});
   const double height = projection.pixel() * size;
   for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
+    for (int x = 0; x < width; ++x) {
       const std::uint32_t triangle =
-          surface.triangle[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
+          surface.triangle[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                            static_cast<std::size_t>(x)];
       if (triangle == kInvalid) continue;
       const TriangleOrigin from = origin(scene, triangle);

@@ -31,7 +31,7 @@ class TexelDensity {
   std::uint64_t pixels_ = 0;
 };
 
-/// [#images] Over all pixels of pictures of `size` pixels square that show a triangle with the image, by any
+/// [#images] Over all pixels of pictures `size` pixels high that show a triangle with the image, by any
 /// of its materials (variants among them). Where an image shrinks to a line, no number of texels helps, and
 /// the pixel does not count. Blended and masked surfaces are taken for opaque. `scene` is of the model and
 /// needs no textures. Cost: that of the pictures and O(#pixels · #images of a material). Throws

@@ -92,6 +92,10 @@ std::vector<Vec3d> directions(const ViewOptions& options) {
   return points;
 }
 
+int picture_width(const View& view, std::int64_t height) {
+  return std::max(1, static_cast<int>(std::lround(view.aspect * static_cast<double>(height))));
+}
+
 View view_onto(const Sphere& sphere, Vec3d direction, double fov_deg, double margin) {
   // Numbers of a view are rounded, so that the last bits of the C library's sines do not show.
   View view;

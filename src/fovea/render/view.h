@@ -17,6 +17,7 @@ struct View {
   bool perspective = true;
   double half_height = 1;  ///< Of what is seen: at distance 1 in perspective, anywhere else in parallel.
   double near = 0;         ///< Nothing closer to the eye's plane is seen.
+  double aspect = 1;       ///< Width over height of what is seen, where a picture is not given both.
 
   /// World to eye: x to the right, y up, z the distance in front of the eye.
   Vec3d to_eye(Vec3d p) const {
@@ -24,6 +25,9 @@ struct View {
     return {dot(right, d), dot(up, d), -dot(back, d)};
   }
 };
+
+/// Pixels across a picture of a view, from the pixels along its height.
+int picture_width(const View& view, std::int64_t height);
 
 /// Directions to look from.
 enum class ViewSet {

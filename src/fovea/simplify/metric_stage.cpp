@@ -1,8 +1,11 @@
 #include "fovea/simplify/metric_stage.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/base/error.h"
 #include "fovea/render/exposure.h"
 #include "fovea/render/scene.h"
 
@@ -10,6 +13,8 @@ namespace fovea {
 
 namespace {
 
+/// Pixels of all views together: some 50 bytes each.
+constexpr double kMostPixels = 1 << 27;
 constexpr std::uint64_t kMostSeen = 12000;
 constexpr double kImageFrom = 2;
 constexpr int kLargestView = 256, kSmallestView = 64, kViewStep = 16;
@@ -52,11 +57,24 @@ MetricStage metric_stage(const SimplifyOptions& options, std::uint64_t target, s
   return stage;
 }
 
-ViewedModel viewed_model(const Model& model, const ViewOptions& options, Context& context) {
+double pixel_count(std::span<const View> views, int size) {
+  double sum = 0;
+  for (const View& view : views) sum += static_cast<double>(picture_width(view, size)) * size;
+  return sum;
+}
+
+ViewedModel viewed_model(const Model& model, const ViewOptions& options, const MetricStage& stage,
+                         Context& context) {
   ViewedModel viewed;
   viewed.pose = rest_pose(model);
   viewed.scene = make_render_scene(model, viewed.pose, context, nullptr, SceneTextures::base_and_finish);
   viewed.views = views_of(options, model, viewed.pose, viewed.scene.sphere);
+  if (stage.is_by_views() && pixel_count(viewed.views, stage.view_size) > kMostPixels) {
+    throw Error(ErrorKind::limit,
+                fmt::format("{} views that are {} pixels high are more than a metric looks at",
+                            viewed.views.size(), stage.view_size),
+                "--view-size", "take fewer or smaller views");
+  }
   return viewed;
 }
 

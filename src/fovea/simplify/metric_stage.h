@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fovea/render/scene.h"
@@ -14,7 +15,7 @@ namespace fovea {
 struct MetricStage {
   Metric metric = Metric::quadric;  ///< Never `automatic`.
   std::uint64_t from = 0;           ///< Of a metric by views: from so many triangles on,
-  int view_size = 256;              ///< in pictures of so many pixels square.
+  int view_size = 256;              ///< in pictures of so many pixels high.
 
   bool is_by_views() const { return metric != Metric::quadric && metric != Metric::visibility; }
   /// Whether what is seen counts more (`exposed_importance`).
@@ -37,8 +38,11 @@ struct ViewedModel {
   RenderScene scene;  ///< With base colours, metalness and roughness.
   std::vector<View> views;
 };
-/// Throws what `views_of` throws.
-ViewedModel viewed_model(const Model& model, const ViewOptions& options, Context& context);
+/// Throws what `views_of` throws, and Error(limit) if a metric by views would hold too many pixels.
+ViewedModel viewed_model(const Model& model, const ViewOptions& options, const MetricStage& stage,
+                         Context& context);
+/// Of all pictures.
+double pixel_count(std::span<const View> views, int size);
 
 /// [#meshes] Weights of vertices by how much of the surface around them views see (render/exposure.h), for
 /// the metrics `visibility` and `image`. Nothing weighs less than a thousandth; for the image from all around

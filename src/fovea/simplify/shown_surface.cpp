@@ -22,7 +22,8 @@ ShownSurface::ShownSurface(const CollapseState& state, const Model& model,
                            std::span<const std::size_t> mesh_index, const RenderScene& scene,
                            const Pose& pose, std::vector<View> views, int size, const Context& context)
     : state_(state), materials_(scene.materials) {
-  for (const View& view : views) projections_.emplace_back(view, SampleGrid{size, size, 1});
+  for (const View& view : views)
+    projections_.emplace_back(view, SampleGrid{picture_width(view, size), size, 1});
   const std::vector<Instance> instances_shown = instances(model, pose);
   std::uint64_t vertices = 0, faces = 0;
   for (std::uint32_t s = 0; s < state.slots.size(); ++s) {

@@ -29,7 +29,7 @@ struct ShownInstance {
 class ShownSurface {
  public:
   /// Of the instances in `scene` those of the engine's meshes; `mesh_index` are these in the model, by slot.
-  /// `size` is the width and height of a view in pixels. O(#V · #views), parallel.
+  /// `size` is the height of a view in pixels. O(#V · #views), parallel.
   ShownSurface(const CollapseState& state, const Model& model, std::span<const std::size_t> mesh_index,
                const RenderScene& scene, const Pose& pose, std::vector<View> views, int size,
                const Context& context);

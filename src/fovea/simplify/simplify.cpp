@@ -323,9 +323,8 @@ OptionList describe(SimplifyOptions& o) {
        "--views says.",
        &o.cull_hidden, ""},
       {"view-size",
-       "Width and height of the views of a metric; 256, for image less if so few triangles are asked for "
-       "that "
-       "it does.",
+       "Pixels along the height of the views of a metric; 256, for image less if so few triangles are "
+       "asked for that it does.",
        &o.view_size, "pixels", 16, 2048},
       {"image-pass", "What the metric image compares: base colour alone, or under light.",
        choice(o.image_pass, {"base-color", "lit"}), ""},
@@ -346,7 +345,7 @@ SimplifyResult simplify(const Model& model, const SimplifyOptions& options, cons
   ViewedModel viewed;
   Importance weights = importance;
   if (const MetricStage stage = stage_of(model, options); stage.metric != Metric::quadric) {
-    viewed = viewed_model(model, options.views, context);
+    viewed = viewed_model(model, options.views, stage, context);
     if (stage.is_by_exposure() && !(stage.is_by_views() && options.even_exposure))
       weights = product(importance, exposed_importance(model, viewed, options, stage, context));
   }

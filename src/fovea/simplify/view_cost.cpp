@@ -34,6 +34,10 @@ double log2_of(double x) {
 /// More than go around an edge that is shown once.
 constexpr std::size_t kMany = 32;
 
+std::size_t pixel_count(const FragmentLists& lists) {
+  return static_cast<std::size_t>(lists.width()) * static_cast<std::size_t>(lists.height());
+}
+
 std::size_t rounded_up(std::size_t n) { return (n + kWide - 1) / kWide * kWide; }
 
 }  // namespace
@@ -139,8 +143,12 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
                    ViewMeasure measure, int size, std::vector<std::vector<std::uint32_t>> originals,
                    const Context& context, Team& team)
     : state_(state), shown_(shown), values_(values), measure_(measure), team_(team) {
-  views_.assign(shown.view_count(), {FragmentLists(size, size, values.background()), {}, {}});
-  const std::size_t pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  std::size_t pixels = 0;  // of the largest
+  for (std::size_t v = 0; v < shown.view_count(); ++v) {
+    const int width = picture_width(shown.view(v), size);
+    views_.push_back({FragmentLists(width, size, values.background()), {}, {}});
+    pixels = std::max(pixels, pixel_count(views_.back().lists));
+  }
   if (measure == ViewMeasure::entropy) {
     const double most = static_cast<double>(pixels) * log2_of(static_cast<double>(pixels) + 1);
     log_scale_ = std::exp2(std::floor(61 - log2_of(most + 1)));
@@ -155,7 +163,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
       ViewState& view = views_[v];
       if (measure == ViewMeasure::entropy) {
         view.count.assign(values.value_count(), 0);
-        view.count[values.background()] = static_cast<std::uint32_t>(pixels);
+        view.count[values.background()] = static_cast<std::uint32_t>(pixel_count(view.lists));
       }
       for (const ShownInstance& showing : shown.showings()) {
         const std::uint32_t first = state.slots[showing.slot].first_face;
@@ -170,7 +178,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
       if (originals.empty()) continue;
       const std::uint32_t* original = originals[v].data();
       for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < size; ++x) view.original[view.lists.pixel(x, y)] = *original++;
+        for (int x = 0; x < view.lists.width(); ++x) view.original[view.lists.pixel(x, y)] = *original++;
       }
     }
   });
@@ -179,10 +187,10 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
 std::shared_ptr<ViewCost::Scratch> ViewCost::make_scratch() const {
   auto scratch = std::make_shared<Scratch>(shown_.face_count(),
                                            measure_ == ViewMeasure::entropy ? values_.value_count() : 0);
-  const FragmentLists& lists = views_[0].lists;
-  for (Scratch::Sight& sight : scratch->sights)
-    sight.columns.resize(rounded_up(static_cast<std::size_t>(lists.width())) / kWide);
-  scratch->unclear.resize(static_cast<std::size_t>(lists.height()) * kWide);
+  std::size_t width = 0;
+  for (const ViewState& view : views_) width = std::max(width, static_cast<std::size_t>(view.lists.width()));
+  for (Scratch::Sight& sight : scratch->sights) sight.columns.resize(rounded_up(width) / kWide);
+  scratch->unclear.resize(static_cast<std::size_t>(views_[0].lists.height()) * kWide);
   return scratch;
 }
 
@@ -614,8 +622,8 @@ double ViewCost::total() const {
     } else {
       std::int64_t logs = 0;
       for (const std::uint32_t n : view.count) logs += n_log_n_[n];
-      const std::size_t pixels = n_log_n_.size() - 1;
-      bits += static_cast<double>(n_log_n_[pixels] - logs) / (log_scale_ * static_cast<double>(pixels));
+      const auto largest = static_cast<double>(n_log_n_.size() - 1);
+      bits += static_cast<double>(n_log_n_[pixel_count(view.lists)] - logs) / (log_scale_ * largest);
     }
   }
   return measure_ == ViewMeasure::image ? static_cast<double>(sum) : bits;

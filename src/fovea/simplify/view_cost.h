@@ -75,7 +75,8 @@ class ViewCost {
   /// To be called when all has changed: puts faces into the lists as they are now.
   void put_in(std::span<const std::uint32_t> faces);
 
-  /// The measure of what is shown now: the squared error of all pixels, or the sum of the views' entropies.
+  /// The measure of what is shown now: the squared error of all pixels, or the sum of the views' entropies,
+  /// each as often as its picture is as large as the largest.
   double total() const;
   std::size_t view_count() const { return views_.size(); }
   const FragmentLists& fragments(std::size_t view) const { return views_[view].lists; }

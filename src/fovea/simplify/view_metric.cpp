@@ -14,8 +14,6 @@ namespace fovea {
 
 namespace {
 
-/// Pixels of all views together: some 50 bytes each.
-constexpr double kMostPixels = 1 << 27;
 /// Of vertices in the views that pictures of the original are taken in together.
 constexpr std::size_t kMostScreenBytes = std::size_t{1} << 26;
 
@@ -42,12 +40,6 @@ ViewMetric::ViewMetric(const CollapseState& state, const Model& model,
       size_(stage.view_size),
       viewed_(viewed),
       tie_(is_image() ? kImageTie : kEntropyTie) {
-  if (static_cast<double>(viewed_.views.size()) * size_ * size_ > kMostPixels) {
-    throw Error(ErrorKind::limit,
-                fmt::format("{} views of {} × {} pixels are more than a metric looks at",
-                            viewed_.views.size(), size_, size_),
-                "--view-size", "take fewer or smaller views");
-  }
   if (content_ == PixelContent::region)
     regions_ = std::make_unique<ModelRegions>(model_regions(model, options.regions, context));
   // Else `look` sees the original itself.
@@ -80,7 +72,7 @@ void ViewMetric::make_cost(std::span<const View> views, Pictures originals) {
 void ViewMetric::look(std::span<const VertexField* const> importance) {
   make_cost(viewed_.views, std::move(originals_));
   const auto count = static_cast<double>(viewed_.views.size());
-  scale_ = is_image() ? 1 / (3.0 * 255 * 255 * count * size_ * size_) : 1 / count;
+  scale_ = is_image() ? 1 / (3.0 * 255 * 255 * pixel_count(viewed_.views, size_)) : 1 / count;
   place_.resize(state_.mesh.edges.size());
   part_.resize(state_.mesh.edges.size());
   noted_.assign(state_.mesh.edges.size(), 0);

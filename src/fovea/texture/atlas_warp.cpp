@@ -36,7 +36,8 @@ constexpr double kMostConflicts = 5e-3;
 int oversampling(const WarpedImage& image, int part) {
   const int longest = std::max(image.width, image.height);
   const int wanted = (image.image->width + image.width - 1) / image.width;
-  const int best = std::clamp(std::min(wanted, kLongestBaked / longest), kLeastOversampling, kMostOversampling);
+  const int best =
+      std::clamp(std::min(wanted, kLongestBaked / longest), kLeastOversampling, kMostOversampling);
   return std::max(best / part, kLeastOversampling);
 }
 
