@@ -119,7 +119,7 @@ Model within_bytes(const Model& model, std::uint64_t most, std::int64_t pixels,
   ShrinkOptions options;
   options.shown_pixels = static_cast<double>(pixels);
   options.max_bytes = static_cast<std::int64_t>(most);
-  options.lost = loss_by_pictures(model, options.shown_pixels, context);
+  options.lost = loss_by_pictures(model, {}, options.shown_pixels, context);
   options.output = output;
   return shrink_textures(model, options, {}, context).model;
 }
@@ -386,7 +386,7 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
       Fit fit = fitted(model, shrunk(large, scale, kWithoutLoss, TexelMoves::balanced).model, most, request);
       near[1] = fit.psnr_db;
       results.push_back(fit.bytes > 0 ? std::move(fit.model) : model);
-      results.push_back(within_bytes(large, most, judge(request).size, request.files));
+      results.push_back(within_bytes(model, most, judge(request).size, request.files));
       const std::vector<Comparison> found = compared(model, results, request);
       for (std::size_t w = 0; w < results.size(); ++w) {
         keep(results[w], fmt::format("{}-{}-{}", subject.name, kParts[d], kNames[w]), request);
@@ -546,6 +546,9 @@ int run(int count, char** arguments) {
       return !request.models.empty() &&
              std::ranges::find(request.models, subject.name) == request.models.end();
     });
+    if (subjects.empty())
+      throw Error(ErrorKind::usage, "there is none of these models", "--models",
+                  "those that are not samples need FOVEA_DATA");
     const CompareOptions options = judge(request);
     fmt::print("{} models; pictures of {}², base colour and lit.\n\n", subjects.size(), options.size);
     if (request.table == 0 || request.table == 1) print_protocol(subjects, request);

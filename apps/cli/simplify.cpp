@@ -134,7 +134,8 @@ class Simplify : public Verb {
     }
     if (textures_ && rebake_ == Rebake::on) shrink_options_.rebake.original = &model;
     if (textures_ && shrink_options_.max_bytes)
-      shrink_options_.lost = loss_by_pictures(model, shrink_options_.shown_pixels, session.context);
+      shrink_options_.lost =
+          loss_by_pictures(model, picture_views(), shrink_options_.shown_pixels, session.context);
     const Made made =
         budget_ ? make_within(*budget_, model, importance, session) : make(model, importance, session);
     if (!bytes_reached_ && !allow_miss_) return miss(made, session);
@@ -145,6 +146,11 @@ class Simplify : public Verb {
   }
 
  private:
+  /// Where pictures that choose between images look from.
+  ViewOptions picture_views() const {
+    return options_.views.set == ViewSet::cameras ? options_.views : ViewOptions{};
+  }
+
   void declare_needs(Arguments& arguments) const {
     const auto is = [this](std::initializer_list<Metric> metrics) {
       return std::find(metrics.begin(), metrics.end(), options_.metric) != metrics.end();

@@ -92,9 +92,9 @@ class TextureVerb : public Verb {
     arguments.need({{"allow-miss"}, "--texture-bytes or --bytes", [&] {
                       return options_.max_bytes.has_value() || !bytes_.empty();
                     }});
-    arguments.need({{"views", "view-count", "elevation", "fov", "margin"}, "--texture-size", [&] {
-                      return shown_height_.has_value();
-                    }});
+    arguments.need({{"views", "view-count", "elevation", "fov", "margin"},
+                    "--texture-size, --texture-bytes or --bytes",
+                    [&] { return shown_height_ || options_.max_bytes || !bytes_.empty(); }});
     need_views(arguments, views_);
     arguments.need({{"warp-cells", "warp-rigidity", "warp-floor", "warp-rounds", "warp-tolerance", "saliency",
                      "importance", "maps"},
@@ -116,7 +116,7 @@ class TextureVerb : public Verb {
     if (!densities.empty()) options_.scales = needed_scales(densities, static_cast<double>(*shown_height_));
     const Shrunk result = session.phase("textures", input_, [&] {
       if (budget_ || options_.max_bytes)
-        options_.lost = loss_by_pictures(input.model, options_.shown_pixels, session.context);
+        options_.lost = loss_by_pictures(input.model, views_, options_.shown_pixels, session.context);
       return budget_ ? shrink_textures_within(input.model, *budget_, file_form(output_, write_options_),
                                               options_, field, session.context)
                      : shrink_textures(input.model, options_, field, session.context);

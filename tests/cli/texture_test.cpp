@@ -177,6 +177,16 @@ TEST_F(TextureVerb, BytesThatCannotBeReachedAreAMiss) {
   EXPECT_EQ(texture({vase_, "-o", out("few2.glb"), "--texture-bytes", "10", "--allow-miss"}).code, 0);
 }
 
+TEST_F(TextureVerb, BytesAreSpentByPicturesFromTheViews) {
+  const auto within = [&](const char* views) {
+    return texture({vase_, "-o", out("views.glb"), "--force", "--texture-bytes", "20000", "--views", views});
+  };
+  EXPECT_EQ(within("octahedron").code, 0);
+  const Outcome outcome = within("cameras");
+  EXPECT_EQ(outcome.code, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("camera"));
+}
+
 TEST_F(TextureVerb, OptionsThatDoNothingAloneAreRefused) {
   EXPECT_EQ(texture({vase_, "-o", out("x.glb"), "--max-texture", "64", "--views", "cube"}).code, 2);
   EXPECT_EQ(texture({vase_, "-o", out("x.glb"), "--max-texture", "64", "--allow-miss"}).code, 2);

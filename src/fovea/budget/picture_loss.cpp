@@ -107,14 +107,13 @@ Comparison PictureLoss::scores(const Model& model) {
   return compare(original_, tests, options_, context_).front();
 }
 
-std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
-                                                     Context& context) {
+std::function<double(const Model&)> loss_by_pictures(const Model& original, const ViewOptions& views,
+                                                     double shown_pixels, Context& context) {
   if (counts(original).triangles == 0) return {};
   constexpr double kUsual = 512, kLeast = 64, kMost = 2048;
   const double size = std::clamp(shown_pixels > 0 ? shown_pixels : kUsual, kLeast, kMost);
-  const ViewOptions around{.set = ViewSet::icosahedron};
   const auto pictures =
-      std::make_shared<PictureLoss>(original, around, static_cast<int>(size), Distortion::mse, context);
+      std::make_shared<PictureLoss>(original, views, static_cast<int>(size), Distortion::mse, context);
   return [pictures](const Model& model) { return pictures->of(model).value; };
 }
 

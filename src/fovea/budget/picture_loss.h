@@ -63,9 +63,9 @@ class PictureLoss {
 };
 
 /// What models lose by squared difference in pictures of `shown_pixels` (64 at least and 2048 at most; 0:
-/// 512) from twelve sides, for `ShrinkOptions::lost`. `original` and `context` must outlive it. None if the
-/// original shows nothing.
-std::function<double(const Model&)> loss_by_pictures(const Model& original, double shown_pixels,
-                                                     Context& context);
+/// 512) from `views`, for `ShrinkOptions::lost`. `original` and `context` must outlive it. None if the
+/// original shows nothing. Throws what `views_of` throws.
+std::function<double(const Model&)> loss_by_pictures(const Model& original, const ViewOptions& views,
+                                                     double shown_pixels, Context& context);
 
 }  // namespace fovea
