@@ -133,8 +133,10 @@ std::optional<Done> done(const CollapseState& before, const CollapseStep& step) 
 double difference(const ViewCost& original, const ViewCost& fresh) {
   double sum = 0;
   for (std::size_t v = 0; v < original.view_count(); ++v) {
-    const auto x = original.picture(v), y = fresh.picture(v);
-    for (std::size_t p = 0; p < x.size(); ++p) sum += static_cast<double>(squared_difference(x[p], y[p]));
+    auto x = original.picture(v);
+    const auto y = fresh.picture(v);
+    mark_inside(x, original.fragments(v).width(), original.fragments(v).height());
+    for (std::size_t p = 0; p < x.size(); ++p) sum += static_cast<double>(squared_difference(y[p], x[p]));
   }
   return sum;
 }
@@ -220,6 +222,20 @@ TEST(ViewCost, SaysWhatTwoDrawingsDifferBy) {
     }
     EXPECT_GT(changes, 0) << "nothing was tested";
     EXPECT_GT(most_pieces, 1) << "no sum stopped before the last view";
+  }
+}
+
+TEST(ViewCost, AHoleCountsMoreThanAnOutlineThatMoves) {
+  constexpr int kWidth = 5, kHeight = 4;
+  constexpr PackedColor kGround = 0x00808080, kGrey = 0xFF808080;
+  std::vector<PackedColor> picture(kWidth * kHeight, kGrey);
+  for (const std::size_t x : {0, 1, 2, 3, 4}) picture[x] = kGround;  // the first row
+  mark_inside(picture, kWidth, kHeight);
+  for (std::size_t p = 0; p < picture.size(); ++p) {
+    const bool is_inside = p / kWidth == 2 && p % kWidth > 0 && p % kWidth < 4;
+    EXPECT_EQ(picture[p] >> 24 == kInside, is_inside) << p;
+    EXPECT_EQ(squared_difference(kGrey, picture[p]), p < kWidth ? 8128 : 0) << p;
+    EXPECT_EQ(squared_difference(kGround, picture[p]), p < kWidth ? 0 : is_inside ? 64512 : 8128) << p;
   }
 }
 

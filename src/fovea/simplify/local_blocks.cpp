@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 namespace fovea {
 
@@ -136,6 +137,27 @@ FOVEA_WIDE std::size_t keep_different(std::size_t n, std::uint32_t* before, std:
     }
   }
   return kept;
+}
+
+void mark_inside(std::span<PackedColor> picture, int width, int height) {
+  constexpr PackedColor kOpaque = 255, kColors = 0x00FFFFFF;
+  const auto at = [width](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  };
+  std::vector<std::uint8_t> in_row(picture.size(), 0);  // whether its neighbours in the row are
+  for (int y = 0; y < height; ++y) {
+    for (int x = 1; x + 1 < width; ++x) {
+      const PackedColor* const p = &picture[at(x, y)];
+      in_row[at(x, y)] = (p[-1] & p[0] & p[1]) >> 24 == kOpaque;
+    }
+  }
+  for (int y = 1; y + 1 < height; ++y) {
+    for (int x = 1; x + 1 < width; ++x) {
+      if (in_row[at(x, y - 1)] + in_row[at(x, y)] + in_row[at(x, y + 1)] < 3) continue;
+      PackedColor& pixel = picture[at(x, y)];
+      pixel = (pixel & kColors) | kInside << 24;
+    }
+  }
 }
 
 FOVEA_WIDE std::int64_t added_error(std::size_t n, const std::uint32_t* before, const std::uint32_t* after,

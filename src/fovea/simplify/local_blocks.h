@@ -57,13 +57,22 @@ std::size_t find_changes(const BlockColumn& column, std::span<const std::uint32_
 /// Arrays have room for a multiple of kWide.
 std::size_t keep_different(std::size_t n, std::uint32_t* before, std::uint32_t* after);
 
-/// |x − y|² over the channels, 0 … 255; between a pixel with and one without a surface 8128 more.
-inline std::int32_t squared_difference(PackedColor x, PackedColor y) {
+/// Coverage of originals inside of the model, see `mark_inside`: as good as opaque.
+constexpr std::uint32_t kInside = 254;
+
+/// Marks the pixels of an original, row by row, that are opaque and have only such around them: what shows
+/// the background there has a hole.
+void mark_inside(std::span<PackedColor> picture, int width, int height);
+
+/// |x − original|² over the channels, 0 … 255; between a pixel with and one without a surface 8128 more, and
+/// for a hole 64,512.
+inline std::int32_t squared_difference(PackedColor x, PackedColor original) {
   const auto d = [&](int shift) {
-    return static_cast<std::int32_t>(x >> shift & 255) - static_cast<std::int32_t>(y >> shift & 255);
+    return static_cast<std::int32_t>(x >> shift & 255) - static_cast<std::int32_t>(original >> shift & 255);
   };
   const std::int32_t r = d(0), g = d(8), b = d(16), coverage = d(24);
-  return r * r + g * g + b * b + coverage * coverage / 8;
+  const std::int32_t uncovered = coverage * coverage / 8;
+  return r * r + g * g + b * b + (original >> 24 == kInside ? 8 * uncovered : uncovered);
 }
 
 /// How much farther n colours are from the originals after than before. Arrays have room for a multiple of

@@ -173,12 +173,14 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
         }
       }
       if (measure == ViewMeasure::entropy) continue;
+      std::vector<PackedColor> original = originals.empty() ? picture(v) : std::move(originals[v]);
+      const int width = view.lists.width();
+      mark_inside(original, width, size);
       view.original.resize(view.lists.pixel_count());
       for (std::size_t p = 0; p < view.original.size(); ++p) view.original[p] = view.lists.first(p).value;
-      if (originals.empty()) continue;
-      const std::uint32_t* original = originals[v].data();
+      auto next = original.begin();
       for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < view.lists.width(); ++x) view.original[view.lists.pixel(x, y)] = *original++;
+        for (int x = 0; x < width; ++x) view.original[view.lists.pixel(x, y)] = *next++;
       }
     }
   });
