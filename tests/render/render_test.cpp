@@ -342,7 +342,7 @@ TEST(Render, ACameraIsAsWideAsItSaysOrAsAScreen) {
   ASSERT_EQ(views.size(), 5u);
   EXPECT_EQ(picture_width(views[0], 90), 160);
   EXPECT_EQ(picture_width(views[1], 100), 250);
-  EXPECT_EQ(picture_width(views[2], 160), 20) << "within reason";
+  EXPECT_EQ(picture_width(views[2], 160), 40) << "within reason";
   EXPECT_EQ(picture_width(views[2], 1), 1);
   EXPECT_EQ(picture_width(views[3], 100), 150);
   EXPECT_EQ(picture_width(views[4], 100), 100);

@@ -17,6 +17,9 @@ namespace fovea {
 
 namespace {
 
+/// Width over height of a camera that does not say; and at most, or its reciprocal at least.
+constexpr double kScreenAspect = 16.0 / 9, kMostAspect = 4;
+
 /// Numbers the images that materials ask for, and decodes them.
 class SceneImages {
  public:
@@ -193,12 +196,6 @@ RenderScene make_render_scene(const TriMesh& mesh) {
   scene.sphere = sphere_around(scene.meshes);
   return scene;
 }
-
-namespace {
-
-constexpr double kScreenAspect = 16.0 / 9, kMostAspect = 8;
-
-}  // namespace
 
 std::vector<View> camera_views(const Model& model, const Pose& pose) {
   std::vector<View> views;
