@@ -363,10 +363,10 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
     int better = 0, worse = 0;
     double worst = 0;
     void add(const ImageScores& own, const ImageScores& plain) {
-      psnr += own.psnr - plain.psnr;
+      psnr += own.psnr == plain.psnr ? 0 : own.psnr - plain.psnr;  // both infinite for what looks the same
       ms_ssim += own.ms_ssim - plain.ms_ssim;
-      log_flip += std::log(own.flip / plain.flip);
-      count(own.psnr - plain.psnr);
+      log_flip += own.flip == plain.flip ? 0 : std::log(own.flip / plain.flip);
+      count(own.psnr == plain.psnr ? 0 : own.psnr - plain.psnr);
     }
     void count(double gain) {
       better += gain > 0;
@@ -401,8 +401,9 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
         const auto psnr = [&](std::size_t n) {
           return (found[n].passes[0].psnr + found[n].passes[1].psnr) / 2;
         };
-        both[d][w].psnr += psnr(w) - psnr(0);
-        both[d][w].count(psnr(w) - psnr(0));
+        const double gain = psnr(w) == psnr(0) ? 0 : psnr(w) - psnr(0);
+        both[d][w].psnr += gain;
+        both[d][w].count(gain);
         fmt::print("\n");
       }
       std::fflush(stdout);

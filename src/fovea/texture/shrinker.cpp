@@ -205,16 +205,16 @@ class Shrinker {
       return "its images keep more than a quarter of their sides";
     try {
       const std::vector<AtlasFace> faces = atlas_faces(result_.model, atlas);
-      std::vector<Image8> originals, pictures;
+      std::vector<Image8> originals, unfilled, pictures;
       for (const int image : atlas.images) {
-        pictures.push_back(decoded(image));
-        if (rebake_ == nullptr) {
-          fill_between(pictures.back(), faces, context_);
-        } else {
-          originals.push_back(pictures.back());
-          pictures.back() = rebaked(image, originals.back());
+        unfilled.push_back(decoded(image));
+        if (rebake_ != nullptr) {
+          originals.push_back(unfilled.back());
+          unfilled.back() = rebaked(image, originals.back());
           fill_between(originals.back(), rebake_->origin().original_faces(), context_);
         }
+        pictures.push_back(unfilled.back());
+        fill_between(pictures.back(), faces, context_);
       }
       std::vector<WarpedImage> wanted;
       for (std::size_t i = 0; i < pictures.size(); ++i) {
@@ -236,8 +236,9 @@ class Shrinker {
       change.importance = std::move(warp.importance);
       if (!warp.is_moved) {
         for (std::size_t i = 0; i < pictures.size(); ++i) {
-          if (is_smaller(atlas.images[i]) && std::erase(changing, atlas.images[i]) > 0)
-            finish(atlas.images[i], warp.images[i], faces);
+          const int image = atlas.images[i];
+          if (is_smaller(image) && std::erase(changing, image) > 0)
+            finish(image, nearer_of(image, std::move(warp.images[i]), unfilled[i], faces), faces);
         }
         return "it would gain nothing";
       }
@@ -262,6 +263,14 @@ class Shrinker {
                : resized(picture, size.width, size.height, use.meaning, use.wrap_u, use.wrap_v, context_);
   }
 
+  /// A smaller image: what was filled between charts unless pictures show more of what lay there: large
+  /// halves keep that.
+  Image8 nearer_of(int image, Image8 filled, const Image8& picture, std::span<const AtlasFace> faces) const {
+    const ImageUse& use = uses_[index(image)];
+    Image8 unfilled = sized(picture, wanted(image), use);
+    return is_nearer(unfilled, filled, picture, use, faces) ? unfilled : filled;
+  }
+
   /// Whether pictures of all sizes together tell one of two smaller images less from the whole than the
   /// other.
   bool is_nearer(const Image8& one, const Image8& other, const Image8& whole, const ImageUse& use,
@@ -276,26 +285,20 @@ class Shrinker {
     return together(one) < together(other);
   }
 
-  /// Between charts it is filled unless pictures show more of what lay there: large halves keep that.
   void resize(int image, std::span<const AtlasFace> faces) {
     try {
       const ImageUse& use = uses_[index(image)];
       const WantedImage& size = wanted(image);
       Image8 picture = decoded(image);
       const Image8 old = rebake_ != nullptr && !is_smaller(image) ? picture : Image8();
-      if (rebake_ != nullptr) {
-        picture = rebaked(image, picture);
-        if (is_smaller(image)) picture = sized(picture, size, use);
-      } else if (is_smaller(image)) {
+      if (rebake_ != nullptr) picture = rebaked(image, picture);
+      if (is_smaller(image)) {
         Image8 filled = picture;
         if (!size.file || size.file->fill) fill_between(filled, faces, context_);
         const bool is_same = filled.pixels == picture.pixels;
         filled = sized(filled, size, use);
-        if (!size.file && !is_same) {
-          Image8 unfilled = sized(picture, size, use);
-          if (is_nearer(unfilled, filled, picture, use, faces)) filled = std::move(unfilled);
-        }
-        picture = std::move(filled);
+        picture =
+            size.file || is_same ? std::move(filled) : nearer_of(image, std::move(filled), picture, faces);
       }
       finish(image, picture, faces, old);
     } catch (const Error& error) {
