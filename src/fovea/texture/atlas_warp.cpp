@@ -249,19 +249,25 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
     asked.joined_u = asked.joined_u || image.wrap_u == Wrap::repeat;
     asked.joined_v = asked.joined_v || image.wrap_v == Wrap::repeat;
   }
-  std::optional<AtlasWarp> found;
-  for (int attempt = 0; attempt < kAttempts && asked.floor <= 1; ++attempt, asked.floor *= 2) {
-    std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
-    if (!next || !warper.bake(*next, kTrialPart, measured)) continue;
-    if (measured && next->loss >= (found ? found->loss : plain_loss)) continue;
-    found = std::move(next);
-    found->floor = asked.floor;
-    if (!measured || found->loss < kGoodLoss * plain_loss) break;
-  }
-  const bool is_baked = std::ranges::all_of(images, [](const WarpedImage& image) {
+  const bool is_final = std::ranges::all_of(images, [](const WarpedImage& image) {
     return oversampling(image, kTrialPart) == oversampling(image, 1);
   });
-  if (found && (is_baked || warper.bake(*found, 1, measured))) best = std::move(*found);
+  int attempt = 0;
+  const auto less_ambitious = [&] { ++attempt, asked.floor *= 2; };
+  // What is good in a trial may not be when it is baked at its best.
+  for (bool is_done = false; !is_done;) {
+    std::optional<AtlasWarp> found;
+    for (bool is_good = false; !is_good && attempt < kAttempts && asked.floor <= 1; less_ambitious()) {
+      std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
+      if (!next || !warper.bake(*next, kTrialPart, measured)) continue;
+      if (measured && next->loss >= (found ? found->loss : plain_loss)) continue;
+      found = std::move(next);
+      found->floor = asked.floor;
+      is_good = !measured || found->loss < kGoodLoss * plain_loss;
+    }
+    is_done = !found || is_final || warper.bake(*found, 1, measured);
+    if (found && is_done) best = std::move(*found);
+  }
   best.plain_loss = plain_loss;
   best.maps = warper.maps();
   best.importance = std::move(importance);
