@@ -51,7 +51,7 @@ SeenLoss::SeenLoss(const Model& model, std::vector<AtlasFace> faces, std::vector
     : model_(model),
       faces_(std::move(faces)),
       meanings_(std::move(meanings)),
-      before_{picture_slopes(model, faces_), std::move(images)},
+      before_{picture_slopes(model, faces_), std::move(images), {}},
       points_(spread_points(model, faces_, field, kPoints)) {}
 
 PictureLosses SeenLoss::of(std::span<const AtlasFace> to, std::span<const std::array<float, 3>> turns,
@@ -109,8 +109,21 @@ ImageF SeenLoss::map(const TexelOrigins& places, std::span<const Image8> images,
 }
 
 SeenLoss::View SeenLoss::view(std::span<const AtlasFace> faces, std::span<const Image8> images) const {
-  View view{picture_slopes(model_, faces), {}};
-  for (std::size_t i = 0; i < images.size(); ++i) view.images.push_back(mip_map(images[i], meanings_[i]));
+  View view{picture_slopes(model_, faces), {}, {}};
+  const auto sizes = [&](std::size_t i) {
+    const MipMap &was = before_.images[i], &is = view.images[i];
+    return std::array{was.width(), was.height(), is.width(), is.height()};
+  };
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    view.images.push_back(mip_map(images[i], meanings_[i]));
+    const auto same =
+        std::ranges::find_if(view.alike, [&](const auto& a) { return sizes(a[0]) == sizes(i); });
+    if (same == view.alike.end()) {
+      view.alike.push_back({i});
+    } else {
+      same->push_back(i);
+    }
+  }
   return view;
 }
 
@@ -119,16 +132,20 @@ PictureLosses SeenLoss::at(std::uint32_t face, Vec2f was, Vec2f is, float turn, 
   for (std::size_t p = 0; p < kPictureSizes.size(); ++p) {
     const UvSlopes slopes_before = scaled(before_.slopes[face], 1 / kPictureSizes[p]),
                    slopes_now = scaled(now.slopes[face], 1 / kPictureSizes[p]);
-    for (std::size_t k = 0; k < now.images.size(); ++k) {
-      const TexelMeaning& meaning = meanings_[k];
-      Rgba before = before_.images[k].sample(was, slopes_before, sampler_);
-      if (meaning.kind == TexelMeaning::Kind::normal) before = turned(before, turn, false);
-      const double loss = squared_difference(shown(before, meaning),
-                                             shown(now.images[k].sample(is, slopes_now, sampler_), meaning));
-      result.all[p] += loss * loss_weight(meaning);
-      if (meaning.kind != TexelMeaning::Kind::color) continue;
-      result.color[p] += loss;
-      result.distance[p] += std::sqrt(loss);
+    for (const std::vector<std::size_t>& images : now.alike) {
+      const Footprint look_before = before_.images[images[0]].footprint(was, slopes_before, sampler_),
+                      look_now = now.images[images[0]].footprint(is, slopes_now, sampler_);
+      for (const std::size_t k : images) {
+        const TexelMeaning& meaning = meanings_[k];
+        Rgba before = before_.images[k].sample(look_before);
+        if (meaning.kind == TexelMeaning::Kind::normal) before = turned(before, turn, false);
+        const double loss =
+            squared_difference(shown(before, meaning), shown(now.images[k].sample(look_now), meaning));
+        result.all[p] += loss * loss_weight(meaning);
+        if (meaning.kind != TexelMeaning::Kind::color) continue;
+        result.color[p] += loss;
+        result.distance[p] += std::sqrt(loss);
+      }
     }
   }
   return result;

@@ -59,6 +59,8 @@ class SeenLoss {
   struct View {
     std::vector<UvSlopes> slopes;  // [#faces] `picture_slopes`
     std::vector<MipMap> images;
+    /// Images of one size, and of one before, which are looked up alike.
+    std::vector<std::vector<std::size_t>> alike;
   };
   View view(std::span<const AtlasFace> faces, std::span<const Image8> images) const;
   PictureLosses at(std::uint32_t face, Vec2f was, Vec2f is, float turn, const View& now) const;
