@@ -94,7 +94,7 @@ const commands = [
   ['simplify, error', 'simplify', 'out.gltf', MEDIUM, ['--error', '0.01']],
   ['simplify, one triangle', 'simplify', 'out.glb', MEDIUM, ['--triangles', '1', ...quick]],
   ['simplify, integers', 'simplify', 'out.glb', MEDIUM, ['--ratio', '0.2', ...quick, '--placement', 'half-edge', '--quantize', '--compression', 'meshopt']],
-  ['simplify, textures', 'simplify', 'out.glb', SMALL, ['--ratio', '0.3', ...quick, '--textures', '--bake-normals', '--max-texture', '64']],
+  ['simplify, textures', 'simplify', 'out.glb', SMALL, ['--ratio', '0.3', ...quick, '--textures', '--new-normal-maps', '--max-texture', '64']],
   ['simplify, culled', 'simplify', 'out.glb', SMALL, ['--ratio', '0.3', ...quick, '--cull-hidden']],
   ['simplify, topology', 'simplify', 'out.glb', SMALL, ['--ratio', '0.05', ...quick, '--keep-topology', '--lock-boundary', '--per-mesh']],
   ['simplify, saliency', 'simplify', 'out.glb', SMALL, ['--ratio', '0.3', ...quick, '--saliency', 'yang']],

@@ -51,7 +51,7 @@ class Simplify : public Verb {
           "Try what people look at in several ways and keep what looks best."},
          {"fovea simplify shoe.glb -o shoe-web.glb --ratio 0.05 --best",
           "Try all that Fovea knows and keep what looks best; takes seconds to minutes."},
-         {"fovea simplify helmet.glb -o tiny.glb --ratio 0.05 --textures --max-texture 512 --bake-normals",
+         {"fovea simplify helmet.glb -o tiny.glb --ratio 0.05 --textures --max-texture 512 --new-normal-maps",
           "Bake the textures for the result, at most 512 texels along a side, and the shape that went "
           "into normal maps."},
          {"fovea simplify helmet.glb -o web.glb --bytes 500KB --textures --quantize",
@@ -188,7 +188,7 @@ class Simplify : public Verb {
     for (const OptionList& list : {describe(all), describe(all.rebake), describe(all.warp)})
       for (const Option& option : list) names.push_back(option.name);
     arguments.need({names, "--textures", [this] { return textures_; }});
-    arguments.need({{"bake-normals"}, "--rebake on", [this] { return rebake_ == Rebake::on; }});
+    arguments.need({{"new-normal-maps"}, "--rebake on", [this] { return rebake_ == Rebake::on; }});
   }
 
   void check_request() {

@@ -200,7 +200,7 @@ TEST_F(TextureVerb, AModelWithoutTexturesComesThrough) {
 TEST_F(TextureVerb, SimplifyBakesTexturesAnew) {
   const Outcome outcome =
       fovea({"simplify", vase_, "-o", out("baked.glb"), "--ratio", "0.1", "--metric", "quadric", "--textures",
-             "--texture-scale", "0.5", "--bake-normals", "--json"});
+             "--texture-scale", "0.5", "--new-normal-maps", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
   ASSERT_FALSE(json["atlases"].empty());
@@ -227,7 +227,7 @@ TEST_F(TextureVerb, SimplifyCanLeaveTexturesAlone) {
 
 TEST_F(TextureVerb, OptionsOfTexturesNeedThem) {
   for (const std::vector<std::string>& extra : {std::vector<std::string>{"--max-texture", "64"},
-                                                {"--bake-normals"},
+                                                {"--new-normal-maps"},
                                                 {"--rebake", "off"},
                                                 {"--warp", "none"},
                                                 {"--texture-psnr", "30"},
@@ -239,7 +239,7 @@ TEST_F(TextureVerb, OptionsOfTexturesNeedThem) {
     EXPECT_THAT(outcome.err, HasSubstr("--textures")) << extra[0];
   }
   const Outcome outcome = fovea({"simplify", vase_, "-o", out("bad.glb"), "--ratio", "0.5", "--textures",
-                                 "--rebake", "off", "--bake-normals"});
+                                 "--rebake", "off", "--new-normal-maps"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--rebake"));
 }
@@ -247,7 +247,7 @@ TEST_F(TextureVerb, OptionsOfTexturesNeedThem) {
 TEST_F(TextureVerb, SimplifyWithoutImagesSaysThatThereAreNone) {
   const std::string square = folder_.write("square.obj", square_obj());
   const Outcome outcome =
-      fovea({"simplify", square, "-o", out("square.glb"), "--ratio", "1", "--textures", "--bake-normals"});
+      fovea({"simplify", square, "-o", out("square.glb"), "--ratio", "1", "--textures", "--new-normal-maps"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("textures none"));
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "fovea/io/image_codec.h"
 #include "fovea/texture/shrink.h"
@@ -131,6 +132,36 @@ TEST(Rebake, NormalsTakeTheOldMapAlong) {
   EXPECT_NEAR((half.at(16, 3)[1] - 127.5) / (half.at(16, 3)[2] - 127.5), slope / 2, 0.02);
 }
 
+TEST(Rebake, NormalsGoIntoTheMapThatThereIs) {
+  Squares s = flat_and_wavy(2);
+  // Nothing but noise, so that the file has bytes to lose.
+  Image8 noisy(64, 64, 3, ColorEncoding::linear);
+  std::mt19937 random(1);
+  for (std::size_t i = 0; i < noisy.pixels.size(); ++i)
+    noisy.pixels[i] = i % 3 == 2 ? 255 : static_cast<std::uint8_t>(124 + random() % 8);
+  for (Model* model : {&s.original, &s.simplified}) model->images[1].bytes = encode_png(noisy);
+  ShrinkOptions options = rebake_of(s.original);
+  options.scale = 0.5;
+  const Shrunk found = rebaked(s.simplified, options);
+  EXPECT_EQ(found.model.images.size(), 2u);
+  const Image8 map = decode_image(found.model.images[1].bytes);
+  ASSERT_EQ(map.width, 32);
+  for (int y = 2; y < 30; y += 3) {
+    for (int x = 5; x < 27; x += 2) {
+      const Vec3d n = normal_at(((x + 0.5) / 32 - 0.1) / 0.8, (y + 0.5) / 32);
+      // Noise of 4 / 127.5 halves when it is made smaller.
+      EXPECT_NEAR(map.at(x, y)[0] / 127.5 - 1, n.x, 0.03) << x << ' ' << y;
+      EXPECT_NEAR(map.at(x, y)[1] / 127.5 - 1, -n.y, 0.03) << x << ' ' << y;
+    }
+  }
+  // What is shaded flat has no normals to bake: the map stays what it was, made smaller.
+  std::erase_if(s.simplified.meshes[0].surface.layers,
+                [](const AttributeLayer& layer) { return layer.semantic == Semantic::normal; });
+  const Image8 flat = decode_image(rebaked(s.simplified, options).model.images[1].bytes);
+  EXPECT_NEAR(flat.at(10, 1)[1], 127.5, 4);
+  EXPECT_GT(std::abs(map.at(10, 1)[1] - 127.5), 10);
+}
+
 /// Two of the squares in one place and in one image, side by side there: the bumps of the second go the other
 /// way.
 Squares two_meshes() {
@@ -239,7 +270,7 @@ TEST(Rebake, MovesAndBakesAtOnce) {
   EXPECT_EQ(one.images[0].after.width, 16) << one.images[0].kept_because;
   EXPECT_GT(one.atlases.at(0).rebaked_texels, 0.5);
   EXPECT_EQ(one.model.images[0].bytes, three.model.images[0].bytes);
-  options.rebake.normals = true;
+  options.rebake.new_normal_maps = true;
   EXPECT_EQ(rebaked(s.simplified, options).model.images[1].bytes,
             rebaked(s.simplified, options, 3).model.images[1].bytes);
 }

@@ -109,7 +109,7 @@ async function sampleFaults() {
     ['10.gltf', 0.1, ...quick],
     ['10-quantized.glb', 0.1, ...quick, '--quantize'],
     ['10-meshopt.glb', 0.1, ...quick, '--compression', 'meshopt'],
-    ['10-textures.glb', 0.1, ...quick, '--textures', '--bake-normals', '--max-texture', '256'],
+    ['10-textures.glb', 0.1, ...quick, '--textures', '--new-normal-maps', '--max-texture', '256'],
     ['10-quantized-meshopt.glb', 0.1, ...quick, '--quantize', '--compression', 'meshopt'],
   ];
   for (const [suffix, ratio, ...options] of ways) {

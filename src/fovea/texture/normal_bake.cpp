@@ -41,12 +41,6 @@ std::map<int, int> lit_materials(const Model& model, const Atlas& atlas) {
   return sets;
 }
 
-bool has_normals(const Model& model, const Atlas& atlas) {
-  return std::ranges::all_of(atlas.parts, [&](const AtlasPart& part) {
-    return model.meshes[part.mesh].surface.find(Semantic::normal) != nullptr;
-  });
-}
-
 /// Of the base colour of these materials, or of the atlas's first image.
 int model_image(const Model& model, const Atlas& atlas, const std::map<int, int>& materials) {
   for (const auto& [material, set] : materials) {
@@ -113,6 +107,12 @@ void add_tangents(Model& model, const Atlas& atlas, const std::map<int, int>& ma
 }
 
 }  // namespace
+
+bool has_normals(const Model& model, const Atlas& atlas) {
+  return std::ranges::all_of(atlas.parts, [&](const AtlasPart& part) {
+    return model.meshes[part.mesh].surface.find(Semantic::normal) != nullptr;
+  });
+}
 
 std::set<int> add_normal_maps(Model& model, std::span<const Atlas> atlases) {
   std::set<int> added;

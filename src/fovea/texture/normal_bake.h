@@ -14,6 +14,9 @@
 
 namespace fovea {
 
+/// Whether all meshes of an atlas have normals: what is shaded flat is lit by its triangles.
+bool has_normals(const Model& model, const Atlas& atlas);
+
 /// Makes place for normal maps in atlases whose texels may move and whose meshes have normals: materials
 /// without one get a flat one, one for the whole atlas, of the size and the file format of their base colour
 /// (or of the atlas's first image), and parts without tangents get those that the coordinates give, so that

@@ -63,9 +63,11 @@ void check_options(const Model& model, const ShrinkOptions& options) {
 }  // namespace
 
 OptionList describe(RebakeOptions& o) {
-  return {{"bake-normals",
-           "Bake the original's shading into normal maps, new ones where a material has none; costs bytes.",
-           &o.normals, ""}};
+  return {
+      {"new-normal-maps",
+       "Give materials without a normal map one for the original's shading, which is baked into those that "
+       "there are anyhow; costs bytes.",
+       &o.new_normal_maps, ""}};
 }
 
 OptionList describe(ShrinkOptions& o) {

@@ -29,7 +29,9 @@ enum class TexelMoves {
 /// Whether images are baked anew for a surface that was simplified.
 struct RebakeOptions {
   const Model* original = nullptr;  ///< What the model was simplified from; null for no baking.
-  bool normals = false;  ///< Normal maps take over the original's shading, new ones where there are none.
+  /// Materials without a normal map get one that takes over the original's shading, as those that there are
+  /// do anyhow.
+  bool new_normal_maps = false;
 };
 OptionList describe(RebakeOptions& options);
 

@@ -111,6 +111,7 @@ class Shrinker {
       change.not_rebaked_because = "its images are too large to be in memory together";
     } else {
       rebake_ = std::make_unique<AtlasRebake>(*options_.rebake.original, *same, result_.model, atlas);
+      rebakes_normals_ = has_normals(*options_.rebake.original, *same) && has_normals(result_.model, atlas);
     }
   }
 
@@ -126,7 +127,7 @@ class Shrinker {
     return scale;
   }
 
-  bool bakes_normals(int image) const { return options_.rebake.normals && normal_scale(image).has_value(); }
+  bool bakes_normals(int image) const { return rebakes_normals_ && normal_scale(image).has_value(); }
 
   /// An image for the simpler surface.
   Image8 rebaked(int image, const Image8& picture) {
@@ -332,6 +333,7 @@ class Shrinker {
   std::span<const VertexField> field_;
   Context& context_;
   std::unique_ptr<AtlasRebake> rebake_;  // of the atlas at hand, if it is baked anew
+  bool rebakes_normals_ = false;         // in that atlas, from the original's surface
   std::vector<ImageUse> uses_;
   Shrunk result_;
 };
@@ -344,7 +346,7 @@ PreparedModel prepare_images(const Model& model, const RebakeOptions& options) {
     result.originals = find_atlases(*options.original);
     for (const Atlas& atlas : result.originals)
       if (atlas.fixed_because.empty()) bring_inside(result.model, atlas);
-    if (options.normals) result.new_maps = add_normal_maps(result.model, find_atlases(result.model));
+    if (options.new_normal_maps) result.new_maps = add_normal_maps(result.model, find_atlases(result.model));
   }
   result.atlases = find_atlases(result.model);
   for (const EncodedImage& image : result.model.images) result.files.push_back(state_of(image));
