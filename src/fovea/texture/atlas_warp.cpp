@@ -10,7 +10,6 @@
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
 #include "fovea/texture/moved_values.h"
-#include "fovea/texture/rebake.h"
 #include "fovea/texture/seen_loss.h"
 #include "fovea/texture/tangent_frame.h"
 
@@ -95,13 +94,10 @@ ImageF importance_of(const TextureImportance& maps, WarpAim aim) {
   return balanced_importance(maps);
 }
 
-/// Of the images, or of those that they were baked from, empty where there is none.
-std::vector<MipMap> mip_maps(std::span<const WarpedImage> images, const Image8* WarpedImage::*which,
-                             const Context& context) {
+std::vector<MipMap> mip_maps(std::span<const WarpedImage> images, const Context& context) {
   std::vector<MipMap> result(images.size());
   parallel_for_or_throw(context, images.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (images[i].*which != nullptr) result[i] = mip_map(*(images[i].*which), images[i].meaning);
+    for (std::size_t i = begin; i < end; ++i) result[i] = mip_map(*images[i].image, images[i].meaning);
   });
   return result;
 }
@@ -115,16 +111,14 @@ std::vector<TexelMeaning> meanings(std::span<const WarpedImage> images) {
 class Warper {
  public:
   Warper(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
-         std::span<const VertexField> field, const AtlasRebake* rebake, Context& context)
+         std::span<const VertexField> field, Context& context)
       : model_(model),
         atlas_(atlas),
         images_(images),
-        rebake_(rebake),
         context_(context),
         from_(atlas_faces(model, atlas)),
         maps_(texture_importance(model, atlas, field, kMapSide, context)),
-        seen_loss_(model, from_, mip_maps(images, &WarpedImage::image, context), meanings(images), field),
-        originals_(mip_maps(images, &WarpedImage::original, context)) {}
+        seen_loss_(model, from_, mip_maps(images, context), meanings(images), field) {}
 
   AtlasWarp unmoved() {
     AtlasWarp result;
@@ -171,7 +165,7 @@ class Warper {
   bool bake(AtlasWarp& warp, int part, bool measured) const {
     const auto turns = tangent_turns(model_, from_, warp.to);
     warp.images.assign(images_.size(), {});
-    std::optional<TexelOrigins> origins, originals;
+    std::optional<TexelOrigins> origins;
     for (std::size_t first = 0; first < images_.size(); ++first) {
       if (warp.images[first].width > 0) continue;
       const WarpedImage& image = images_[first];
@@ -180,14 +174,13 @@ class Warper {
       if (!origins || origins->width != width || origins->height != height) {
         origins = texel_origins(warp.to, from_, turns, width, height, context_);
         if (conflicts(from_, warp.to, *origins) > kMostConflicts) return false;
-        if (rebake_ != nullptr)
-          originals = rebake_->moved_origins(warp.model, warp.to, width, height, context_);
       }
       const std::vector<std::size_t> alike = images_like(first);
       std::vector<BakeSource> sources;
-      for (const std::size_t i : alike) sources.push_back(source(i));
-      const std::vector<Image8> large = baked(sources, image.original != nullptr ? *originals : *origins,
-                                              texel_slopes(warp.to, from_, width, height), context_);
+      for (const std::size_t i : alike)
+        sources.push_back({images_[i].image, &seen_loss_.image(i), images_[i].meaning});
+      const std::vector<Image8> large =
+          baked(sources, *origins, texel_slopes(warp.to, from_, width, height), context_);
       for (std::size_t k = 0; k < alike.size(); ++k)
         warp.images[alike[k]] = resized(large[k], image.width, image.height, sources[k].meaning, image.wrap_u,
                                         image.wrap_v, context_);
@@ -198,19 +191,12 @@ class Warper {
   }
 
  private:
-  /// What an image is baked from.
-  BakeSource source(std::size_t i) const {
-    const WarpedImage& image = images_[i];
-    return image.original != nullptr ? BakeSource{image.original, &originals_[i], image.meaning}
-                                     : BakeSource{image.image, &seen_loss_.image(i), image.meaning};
-  }
   /// Those from it on that can be baked together with an image.
   std::vector<std::size_t> images_like(std::size_t first) const {
     const auto shape = [&](std::size_t i) {
       const WarpedImage& image = images_[i];
-      const Image8& from = *source(i).image;
-      return std::tuple(image.original != nullptr, from.width, from.height, image.width, image.height,
-                        image.wrap_u, image.wrap_v);
+      return std::tuple(image.image->width, image.image->height, image.width, image.height, image.wrap_u,
+                        image.wrap_v);
     };
     std::vector<std::size_t> alike;
     for (std::size_t i = first; i < images_.size(); ++i) {
@@ -222,12 +208,10 @@ class Warper {
   const Model& model_;
   const Atlas& atlas_;
   std::span<const WarpedImage> images_;
-  const AtlasRebake* rebake_;
   Context& context_;
   std::vector<AtlasFace> from_;
   TextureImportance maps_;
   SeenLoss seen_loss_;
-  std::vector<MipMap> originals_;  // [#images], empty without an original
   PictureLosses plain_loss_{};
   TexelOrigins places_;
 };
@@ -236,8 +220,8 @@ class Warper {
 
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
-                     bool measured, Context& context, const AtlasRebake* rebake) {
-  Warper warper(model, atlas, images, field, rebake, context);
+                     bool measured, Context& context) {
+  Warper warper(model, atlas, images, field, context);
   AtlasWarp best = warper.unmoved();
   best.model = model;
   const double plain_loss = best.loss;

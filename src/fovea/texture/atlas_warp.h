@@ -16,8 +16,6 @@
 
 namespace fovea {
 
-class AtlasRebake;
-
 /// What a warp gives texels to.
 enum class WarpAim {
   balanced,   ///< What the wanted size would lose, times how large it shows and how much it is looked at.
@@ -31,8 +29,6 @@ struct WarpedImage {
   TexelMeaning meaning;
   int width = 0, height = 0;  ///< Wanted.
   Wrap wrap_u = Wrap::clamp, wrap_v = Wrap::clamp;
-  /// What `image` was baked from for a simpler surface, to be baked from again; null if it was not.
-  const Image8* original = nullptr;
 };
 
 /// A way to move the texels of an atlas.
@@ -56,12 +52,10 @@ struct AtlasWarp {
 /// what loses least is taken. Warps are tried at half the resolution of the bake. If none is taken, images
 /// are `resized` from the filled ones.
 ///
-/// `rebake`: where places of a simplified surface are on its original, for images that have one.
-///
 /// `field` as for `texture_importance`. Cost: that of one bake, or as many as are tried. Throws what `warp`
 /// throws.
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
-                     bool measured, Context& context, const AtlasRebake* rebake = nullptr);
+                     bool measured, Context& context);
 
 }  // namespace fovea

@@ -1,7 +1,6 @@
 #include "fovea/texture/rebake.h"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
 
 #include "fovea/base/error.h"
@@ -22,8 +21,6 @@ Vec2f center(const TexelOrigins& origins, int x, int y) {
   return {(static_cast<float>(x) + 0.5f) / static_cast<float>(origins.width),
           (static_cast<float>(y) + 0.5f) / static_cast<float>(origins.height)};
 }
-
-int texel(double at, int side) { return static_cast<int>(std::clamp(at * side, 0.0, side - 1.0)); }
 
 /// Which texels lie within a square around those that are set.
 std::vector<std::uint8_t> grown(const std::vector<std::uint8_t>& set, int width, int height) {
@@ -90,33 +87,6 @@ void AtlasRebake::keep_beyond(TexelOrigins& origins, const Context& context) con
       origins.drawn[i] = kOutside;
     }
   }
-}
-
-TexelOrigins AtlasRebake::moved_origins(const Model& model, std::span<const AtlasFace> to, int width,
-                                        int height, const Context& context) const {
-  assert(!origins_.empty());
-  const TexelOrigins& unmoved = std::ranges::max_element(origins_, {}, [](const auto& entry) {
-                                  return entry.second.texels.size();
-                                })->second;
-  const TangentFrames frames(model, to);
-  return rasterized<TexelOrigin>(
-      to, width, height,
-      [&](std::uint32_t face, const std::array<double, 3>& weights) {
-        const Vec2d own = uv_at(origin_.faces()[face], weights);
-        const int x = texel(own.x, unmoved.width), y = texel(own.y, unmoved.height);
-        const std::size_t i = unmoved.index(x, y);
-        TexelOrigin result{{static_cast<float>(own.x), static_cast<float>(own.y)}, face};
-        const float way = turn(origin_.frames().at(face, weights), frames.at(face, weights));
-        result.turn = way;
-        if (unmoved.drawn[i] != 1) return result;
-        const TexelOrigin& there = unmoved.texels[i];
-        result.uv = result.uv + (there.uv - center(unmoved, x, y));
-        result.is_mirrored = there.is_mirrored;
-        // What turns after green has turned over turns the other way before.
-        result.turn = there.turn + (there.is_mirrored ? -way : way);
-        return result;
-      },
-      context);
 }
 
 Image8 AtlasRebake::baked(const Image8& image, const TexelMeaning& meaning, const Context& context) {

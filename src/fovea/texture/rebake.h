@@ -26,20 +26,12 @@ class AtlasRebake {
   AtlasRebake(const Model& original, const Atlas& original_atlas, const Model& simplified,
               const Atlas& atlas);
 
-  const SurfaceOrigin& origin() const { return origin_; }
-
   /// An image of the original as the simpler surface needs it, of the same size. O(#texels log #F) for the
   /// first of a size. Throws Error(cancelled).
   Image8 baked(const Image8& image, const TexelMeaning& meaning, const Context& context);
   /// The normal map that lets the simpler surface be lit as the original is (normal_bake.h). `map` is that of
   /// the original, null if it has none; `scale` is that of the material.
   Image8 baked_normals(const Image8* map, double scale, int width, int height, const Context& context);
-
-  /// Where the texels come from once the simpler surface's triangles have moved to `to`; `model` is the
-  /// simplified one with these coordinates. By what was found for the largest image baked so far, to its
-  /// nearest texel. O(#texels), parallel. Throws Error(cancelled).
-  TexelOrigins moved_origins(const Model& model, std::span<const AtlasFace> to, int width, int height,
-                             const Context& context) const;
 
   /// How near the old image is to the new one where triangles lie: `encoding_psnr`; infinite if nothing
   /// changed.

@@ -206,14 +206,10 @@ class Shrinker {
       return "its images keep more than a quarter of their sides";
     try {
       const std::vector<AtlasFace> faces = atlas_faces(result_.model, atlas);
-      std::vector<Image8> originals, unfilled, pictures;
+      std::vector<Image8> unfilled, pictures;
       for (const int image : atlas.images) {
         unfilled.push_back(decoded(image));
-        if (rebake_ != nullptr) {
-          originals.push_back(unfilled.back());
-          unfilled.back() = rebaked(image, originals.back());
-          fill_between(originals.back(), rebake_->origin().original_faces(), context_);
-        }
+        if (rebake_ != nullptr) unfilled.back() = rebaked(image, unfilled.back());
         pictures.push_back(unfilled.back());
         fill_between(pictures.back(), faces, context_);
       }
@@ -221,12 +217,10 @@ class Shrinker {
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         const WantedImage& size = this->wanted(atlas.images[i]);
         const ImageUse& use = uses_[index(atlas.images[i])];
-        WarpedImage& image = wanted.emplace_back(
-            WarpedImage{&pictures[i], use.meaning, size.width, size.height, use.wrap_u, use.wrap_v});
-        if (rebake_ != nullptr && !bakes_normals(atlas.images[i])) image.original = &originals[i];
+        wanted.push_back({&pictures[i], use.meaning, size.width, size.height, use.wrap_u, use.wrap_v});
       }
       AtlasWarp warp = warp_atlas(result_.model, atlas, wanted, field_, aim_of(options_.moves), options_.warp,
-                                  options_.moves == TexelMoves::balanced, context_, rebake_.get());
+                                  options_.moves == TexelMoves::balanced, context_);
       change.rounds = warp.warp.rounds;
       change.last_move = warp.warp.last_move;
       change.settled = warp.warp.settled;

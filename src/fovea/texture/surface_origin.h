@@ -39,7 +39,6 @@ class SurfaceOrigin {
   std::span<const AtlasFace> original_faces() const { return original_faces_; }
   std::span<const AtlasFace> faces() const { return faces_; }
   const TangentFrames& original_frames() const { return original_frames_; }
-  const TangentFrames& frames() const { return frames_; }
 
   /// Thread-safe. About O(log #F).
   std::optional<Place> place(std::uint32_t face, const std::array<double, 3>& weights) const;
