@@ -8,6 +8,7 @@
 #include <random>
 
 #include "fovea/io/image_codec.h"
+#include "fovea/texture/bake.h"
 #include "fovea/texture/shrink.h"
 #include "support/meshes.h"
 #include "support/pictures.h"
@@ -258,6 +259,22 @@ TEST(Rebake, AFileThatCannotBeSmallerStays) {
   const Shrunk found = rebaked(s.simplified, options);
   EXPECT_LE(found.model.images[0].bytes.size(), s.original.images[0].bytes.size());
   EXPECT_EQ(found.bytes, found.model.images[0].bytes.size());
+}
+
+TEST(Rebake, WhatIsBakedIsFilledBetweenCharts) {
+  const Model model = test::small_charts(80);
+  ShrinkOptions options = rebake_of(model);
+  options.scale = 0.5;
+  options.output.format = TextureOutput::png;
+  const Atlas atlas = find_atlases(model).at(0);
+  Image8 image =
+      AtlasRebake(model, atlas, model, atlas).baked(decode_image(model.images[0].bytes), {}, Context());
+  const auto half = [&] { return resized(image, 40, 40, {}, Wrap::repeat, Wrap::repeat, {}).pixels; };
+  const std::vector<std::uint8_t> unfilled = half();
+  fill_between(image, atlas_faces(model, atlas), {});
+  const std::vector<std::uint8_t> filled = half();
+  ASSERT_NE(filled, unfilled);
+  EXPECT_EQ(decode_image(rebaked(model, options).model.images[0].bytes).pixels, filled);
 }
 
 TEST(Rebake, MovesAndBakesAtOnce) {

@@ -301,6 +301,23 @@ TEST(ShrinkTextures, HalvesKeepWhatPicturesShowBetweenCharts) {
   EXPECT_FALSE(is_plain(80));
 }
 
+TEST(ShrinkTextures, WhereNoWarpIsTakenPicturesDecideAboutFillingToo) {
+  ShrinkOptions options;
+  options.scale = 0.25;
+  options.output.format = TextureOutput::png;
+  options.warp.floor = 1;  // every cell is as important as the others
+  const auto is_plain = [&](int side) {
+    const Model model = test::small_charts(side);
+    const Shrunk found = shrink(model, options);
+    EXPECT_THAT(found.atlases.at(0).fixed_because, HasSubstr("gain nothing"));
+    const Image8 quarter =
+        resized(decode_image(model.images[0].bytes), side / 4, side / 4, {}, Wrap::repeat, Wrap::repeat, {});
+    return decode_image(found.model.images[0].bytes).pixels == quarter.pixels;
+  };
+  EXPECT_TRUE(is_plain(2048));
+  EXPECT_FALSE(is_plain(80));
+}
+
 TEST(ShrinkTextures, TexelsMoveWhereASideBecomesAQuarterOrLess) {
   ShrinkOptions options;
   options.scale = 0.3;
