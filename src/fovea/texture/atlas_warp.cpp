@@ -10,6 +10,7 @@
 #include "fovea/texture/bake.h"
 #include "fovea/texture/importance.h"
 #include "fovea/texture/moved_values.h"
+#include "fovea/texture/seam_fit.h"
 #include "fovea/texture/seen_loss.h"
 #include "fovea/texture/tangent_frame.h"
 
@@ -163,7 +164,7 @@ class Warper {
   /// if texels of several triangles would lie on each other, or, if `measured`, pictures of some size lose by
   /// it.
   bool bake(AtlasWarp& warp, int part, bool measured) const {
-    const auto turns = tangent_turns(model_, from_, warp.to);
+    const auto turns = this->turns(warp);
     warp.images.assign(images_.size(), {});
     std::optional<TexelOrigins> origins;
     for (std::size_t first = 0; first < images_.size(); ++first) {
@@ -190,7 +191,29 @@ class Warper {
     return !measured || !loss.is_worse_somewhere(plain_loss_);
   }
 
+  /// Seams of the smaller images as they were in the whole ones, if pictures lose less by it.
+  void fit_seams(AtlasWarp& warp) const {
+    const std::vector<SeamEdge> seams = seam_edges(model_, from_);
+    if (seams.empty()) return;
+    std::vector<Image8> fitted = warp.images;
+    parallel_for_or_throw(context_, fitted.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        fovea::fit_seams(fitted[i], warp.to, images_[i].wrap_u, images_[i].wrap_v, seams, model_,
+                         {&seen_loss_.image(i), from_, images_[i].meaning});
+      }
+    });
+    const double loss = seen_loss_.of(warp.to, turns(warp), fitted, context_).mean();
+    if (loss >= warp.loss) return;
+    warp.loss = loss;
+    warp.images = std::move(fitted);
+  }
+
  private:
+  /// How normal maps turn at corners.
+  std::vector<std::array<float, 3>> turns(const AtlasWarp& warp) const {
+    if (!warp.is_moved) return {};
+    return tangent_turns(model_, from_, warp.to);
+  }
   /// Those from it on that can be baked together with an image.
   std::vector<std::size_t> images_like(std::size_t first) const {
     const auto shape = [&](std::size_t i) {
@@ -252,6 +275,7 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
     is_done = !found || is_final || warper.bake(*found, 1, measured);
     if (found && is_done) best = std::move(*found);
   }
+  warper.fit_seams(best);
   best.plain_loss = plain_loss;
   best.maps = warper.maps();
   best.importance = std::move(importance);
