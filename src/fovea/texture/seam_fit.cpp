@@ -69,21 +69,16 @@ class LeastSquares {
   /// A place that wants `wanted()`, 0 … 255, if it reads texels that are sought.
   template <class Wanted>
   void add(Vec2d uv, double counts, const Wanted& wanted) {
-    Point point;
-    bool is_near = false;
-    Colors shown{};
     const auto around = taps(uv);
+    const auto number = [&](const BilinearTap& tap) { return number_[texel(tap)]; };
+    if (std::ranges::all_of(around, [&](const auto& tap) { return number(tap) == kInvalid; })) return;
+    Point point{{}, {}, counts, wanted()};
     for (std::size_t i = 0; i < around.size(); ++i) {
-      point.texels[i] = number_[texel(around[i])];
+      point.texels[i] = number(around[i]);
       point.weights[i] = around[i].weight;
-      is_near = is_near || point.texels[i] != kInvalid;
       for (std::size_t c = 0; c < channels(); ++c)
-        shown[c] += around[i].weight * image_.at(around[i].x, around[i].y)[c];
+        point.rest[c] -= around[i].weight * image_.at(around[i].x, around[i].y)[c];
     }
-    if (!is_near) return;
-    point.counts = counts;
-    point.rest = wanted();
-    for (std::size_t c = 0; c < channels(); ++c) point.rest[c] -= shown[c];
     points_.push_back(point);
   }
 
