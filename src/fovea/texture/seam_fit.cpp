@@ -21,7 +21,7 @@ namespace {
 constexpr int kPointsPerTexel = 2;
 /// How much a point of a seam counts beside one of the surface.
 constexpr double kSeamWeight = 2;
-constexpr int kSolverRounds = 30;
+constexpr int kSolverRounds = 8;          // more sharpen what pictures of smaller copies do not show
 constexpr int kMostEdgePoints = 1 << 14;  // of a seam's edge
 constexpr int kSeamLooks = 4;
 

@@ -33,7 +33,7 @@ struct WholeImage {
 
 /// Changes the texels that seams read so that bilinear filters find there, and on the triangles around, what
 /// the whole image shows: least squares over points half a texel apart along seams, which count twice, and
-/// over the surface, by its area; a few rounds of conjugate gradients from the image as it is. What lies on
+/// over the surface, by its area; eight rounds of conjugate gradients from the image as it is. What lies on
 /// one side of a seam then is what lay there, whatever is beside it in the image. Colours alone: normals
 /// differ across seams by their frames, and of roughness pictures did not gain. Images that show through stay
 /// as they are, and so does alpha.
