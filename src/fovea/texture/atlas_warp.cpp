@@ -275,7 +275,7 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
     is_done = !found || is_final || warper.bake(*found, 1, measured);
     if (found && is_done) best = std::move(*found);
   }
-  warper.fit_seams(best);
+  if (measured) warper.fit_seams(best);
   best.plain_loss = plain_loss;
   best.maps = warper.maps();
   best.importance = std::move(importance);

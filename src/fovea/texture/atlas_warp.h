@@ -50,7 +50,8 @@ struct AtlasWarp {
 /// one over is not taken; then one with twice the floor is tried, four times at most. If `measured`, nor is
 /// one by which a picture is worse (seen_loss.h), and so it goes until a tenth is gained over not moving;
 /// what loses least is taken. Warps are tried at half the resolution of the bake. If none is taken, images
-/// are `resized` from the filled ones. Either way seams are fitted (seam_fit.h) if pictures lose less by it.
+/// are `resized` from the filled ones. Either way, if `measured`, seams are fitted (seam_fit.h) where
+/// pictures lose less by it.
 ///
 /// `field` as for `texture_importance`. Cost: that of one bake, or as many as are tried. Throws what `warp`
 /// throws.

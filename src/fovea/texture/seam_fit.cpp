@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "fovea/base/srgb.h"
 #include "fovea/surface/half_edges.h"
@@ -24,11 +25,13 @@ constexpr double kSeamWeight = 2;
 constexpr int kSolverRounds = 8;          // more sharpen what pictures of smaller copies do not show
 constexpr int kMostEdgePoints = 1 << 14;  // of a seam's edge
 constexpr int kSeamLooks = 4;
+/// A triangle that is all but a line in the image does not count more than this.
+constexpr double kMostDensity = 16;
 
-/// The triangles' part of the surface for each texel that they take: 1 in the mean.
+/// How much of the surface a texel of each triangle is: 1 in the mean.
 std::vector<double> densities(const Model& model, std::span<const AtlasFace> faces) {
   const std::vector<double> scales = largest_scales(model);
-  std::vector<double> areas, densities;
+  std::vector<double> densities;
   double area = 0, in_image = 0;
   for (const AtlasFace& face : faces) {
     const TriMesh& mesh = model.meshes[face.mesh].surface;
@@ -37,12 +40,13 @@ std::vector<double> densities(const Model& model, std::span<const AtlasFace> fac
     };
     const double scale = scales[face.mesh];
     const double flat = std::abs(cross(face.uv[1] - face.uv[0], face.uv[2] - face.uv[0])) / 2;
-    areas.push_back(scale * scale * triangle_area(at(0), at(1), at(2)));
-    densities.push_back(flat > 0 ? areas.back() / flat : 0);
-    area += areas.back();
+    const double on_surface = scale * scale * triangle_area(at(0), at(1), at(2));
+    densities.push_back(flat > 0 ? on_surface / flat : 0);
+    area += on_surface;
     in_image += flat;
   }
-  for (double& density : densities) density *= area > 0 ? in_image / area : 0;
+  const double mean = in_image > 0 ? area / in_image : 0;
+  for (double& density : densities) density = mean > 0 ? std::min(density / mean, kMostDensity) : 0;
   return densities;
 }
 
@@ -205,12 +209,8 @@ void fit_seams(Image8& image, std::span<const AtlasFace> faces, Wrap wrap_u, Wra
   const auto shown = [&](Vec2d uv, std::uint32_t face) {
     const Rgba look =
         whole.map->sample(single(uv), scaled(slopes[face], 1.0 / kPointsPerTexel), sampler, kSeamLooks);
-    LeastSquares::Colors colors{look.r, look.g, look.b};
-    for (double& color : colors) {
-      color = whole.meaning.kind == TexelMeaning::Kind::color ? to_display(static_cast<float>(color))
-                                                              : 255 * color;
-    }
-    return colors;
+    const auto value = [](float light) { return static_cast<double>(to_display(light)); };
+    return LeastSquares::Colors{value(look.r), value(look.g), value(look.b)};
   };
   LeastSquares texels(image, sampler);
   for (const SeamEdge& seam : seams) {
