@@ -49,7 +49,7 @@ function table2(shop) {
     });
     return line(model, of(ways[0]).colors, ways.map((w) => of(w)[pass].psnr), ways.map((w) => of(w)[pass].msssim));
   }));
-  const head = ['model', 'CD:', 'quadrics, resized:', 'Lee and relaxation:', 'Yang et al.:', 'Fovea:', 'Fovea, normals baked:'];
+  const head = ['model', 'CD:', 'quadrics, resized:', 'Lee and relaxation:', 'Yang et al.:', 'Fovea:', 'Fovea, new normal maps:'];
   const mean = (pass) => ['mean gain', '', ...sums.map((s) => `${signed(s[pass][0] / models.length)} / ${signed(s[pass][1] / models.length, 4)}`)];
   const gain = (of) => [1, 2].map((i) => paper.reduce((sum, row) => sum + of(row)[i] - of(row)[0], 0) / paper.length);
   const [psnr, msssim] = [gain((r) => r[3]), gain((r) => r[4])];
