@@ -79,7 +79,7 @@ TEST(SeamFit, WhatLiesBesideChartsShowsNoMoreAtTheirSeams) {
   EXPECT_LT(ramp.jump(ramp.fitted()), before / 4);
 }
 
-TEST(SeamFit, OnlyColorsChangeAndOnlyAlongSeams) {
+TEST(SeamFit, OnlyColorsChangeAndNothingWithoutSeams) {
   const Ramp ramp;
   EXPECT_EQ(ramp.fitted({.kind = TexelMeaning::Kind::normal}).pixels, ramp.smaller().pixels);
   EXPECT_EQ(ramp.fitted({.kind = TexelMeaning::Kind::data}).pixels, ramp.smaller().pixels);

@@ -38,7 +38,8 @@ struct WholeImage {
 /// differ across seams by their frames, and of roughness pictures did not gain. Images that show through stay
 /// as they are, and so does alpha.
 ///
-/// `faces` [#faces of `whole`] is where triangles are in the image. O(#F + texels along seams · rounds).
+/// `faces` [#faces of `whole`] is where triangles are in the image. O(#F + texels + texels along seams ·
+/// rounds).
 void fit_seams(Image8& image, std::span<const AtlasFace> faces, Wrap wrap_u, Wrap wrap_v,
                std::span<const SeamEdge> seams, const Model& model, const WholeImage& whole);
 
