@@ -140,5 +140,21 @@ TEST(FillBetween, LeavesWhatTrianglesCoverAndWhatIsMixedIntoIt) {
   }
 }
 
+TEST(FillBetween, SeveralOfAnySizesAreFilledAsEachAlone) {
+  const Model model = test::small_charts(256);
+  const std::vector<AtlasFace> faces = faces_of(model);
+  Image8 grey(256, 256, 1, ColorEncoding::linear);
+  for (std::size_t i = 0; i < grey.pixels.size(); ++i) grey.pixels[i] = static_cast<std::uint8_t>(i * 7);
+  const std::vector<Image8> painted{test::pattern(256, 256), test::pattern(300, 200), grey};
+  std::vector<Image8> together = painted;
+  fill_between(together, faces, Context());
+  for (std::size_t i = 0; i < painted.size(); ++i) {
+    Image8 alone = painted[i];
+    fill_between(alone, faces, Context());
+    EXPECT_EQ(together[i].pixels, alone.pixels) << i;
+    EXPECT_NE(alone.pixels, painted[i].pixels) << i;
+  }
+}
+
 }  // namespace
 }  // namespace fovea

@@ -47,11 +47,10 @@ struct Ramp {
   Image8 smaller() const {
     return resized(painted, kSmallerSide, kSmallerSide, {}, Wrap::clamp, Wrap::clamp, Context());
   }
-  Image8 fitted(const TexelMeaning& meaning = {}) const {
-    const MipMap whole = mip_map(filled, meaning);
+  Image8 fitted() const {
+    const MipMap whole = mip_map(filled, {});
     Image8 image = smaller();
-    fit_seams(image, faces, Wrap::clamp, Wrap::clamp, seam_edges(model, faces), model,
-              {&whole, faces, meaning});
+    SeamFit(model, faces, faces).fit(image, whole, Wrap::clamp, Wrap::clamp, Context());
     return image;
   }
   double jump(const Image8& image) const {
@@ -79,18 +78,62 @@ TEST(SeamFit, WhatLiesBesideChartsShowsNoMoreAtTheirSeams) {
   EXPECT_LT(ramp.jump(ramp.fitted()), before / 4);
 }
 
-TEST(SeamFit, OnlyColorsChangeAndNothingWithoutSeams) {
-  const Ramp ramp;
-  EXPECT_EQ(ramp.fitted({.kind = TexelMeaning::Kind::normal}).pixels, ramp.smaller().pixels);
-  EXPECT_EQ(ramp.fitted({.kind = TexelMeaning::Kind::data}).pixels, ramp.smaller().pixels);
-  EXPECT_EQ(ramp.fitted({.transparent = true}).pixels, ramp.smaller().pixels);
-  // Without seams nothing is sought.
+TEST(SeamFit, IsForColorsThatHideWhatIsBehind) {
+  EXPECT_TRUE(SeamFit::is_for({}));
+  EXPECT_FALSE(SeamFit::is_for({.kind = TexelMeaning::Kind::normal}));
+  EXPECT_FALSE(SeamFit::is_for({.kind = TexelMeaning::Kind::data}));
+  EXPECT_FALSE(SeamFit::is_for({.transparent = true}));
+}
+
+TEST(SeamFit, WithoutSeamsNothingChanges) {
   const Model plane = test::textured(test::grid(3, 3), 1);
   const std::vector<AtlasFace> faces = atlas_faces(plane, find_atlases(plane).at(0));
-  const MipMap whole = mip_map(decode_image(plane.images[0].bytes), {});
-  Image8 image = ramp.smaller();
-  fit_seams(image, faces, Wrap::clamp, Wrap::clamp, seam_edges(plane, faces), plane, {&whole, faces, {}});
-  EXPECT_EQ(image.pixels, ramp.smaller().pixels);
+  const Image8 painted = decode_image(plane.images[0].bytes);
+  Image8 image =
+      resized(painted, painted.width / 4, painted.height / 4, {}, Wrap::clamp, Wrap::clamp, Context());
+  const Image8 before = image;
+  const SeamFit fit(plane, faces, faces);
+  EXPECT_FALSE(fit.has_seams());
+  fit.fit(image, mip_map(painted, {}), Wrap::clamp, Wrap::clamp, Context());
+  EXPECT_EQ(image.pixels, before.pixels);
+}
+
+TEST(SeamFit, TexelsThatNoSeamReadsStay) {
+  const Ramp ramp;
+  const Image8 before = ramp.smaller(), after = ramp.fitted();
+  std::vector<std::uint8_t> at_seam(static_cast<std::size_t>(kSmallerSide * kSmallerSide), 0);
+  std::vector<AtlasFace> edges;  // triangles that are an edge of a seam
+  for (const SeamEdge& seam : seam_edges(ramp.model, ramp.faces)) {
+    AtlasFace edge = ramp.faces[seam.face];
+    const std::array<Vec2d, 3> uv = edge.uv;
+    edge.uv = {uv[seam.corner], uv[(seam.corner + 1) % 3], uv[seam.corner]};
+    edges.push_back(edge);
+  }
+  for_edge_texels(
+      edges, kSmallerSide, kSmallerSide,
+      [&](std::uint32_t, const std::array<double, 3>&, std::size_t texel) { at_seam[texel] = 1; });
+  grow_drawn(at_seam, kSmallerSide, kSmallerSide, Context());  // as points lie elsewhere on edges
+  std::size_t changed = 0, stayed = 0;
+  for (std::size_t t = 0; t < at_seam.size(); ++t) {
+    const bool is_same = std::equal(&before.pixels[3 * t], &before.pixels[3 * t] + 3, &after.pixels[3 * t]);
+    EXPECT_TRUE(is_same || at_seam[t] != 0) << t;
+    (is_same ? stayed : changed) += 1;
+  }
+  EXPECT_GT(changed, 100u);
+  EXPECT_GT(stayed, 100u);
+}
+
+TEST(SeamFit, IsTheSameForAnyNumberOfThreads) {
+  const Ramp ramp;
+  const MipMap whole = mip_map(ramp.filled, {});
+  std::vector<Image8> images(2, ramp.smaller());
+  for (int threads = 1; threads <= 2; ++threads) {
+    Context context;
+    context.threads = threads;
+    SeamFit(ramp.model, ramp.faces, ramp.faces)
+        .fit(images[static_cast<std::size_t>(threads) - 1], whole, Wrap::clamp, Wrap::clamp, context);
+  }
+  EXPECT_EQ(images[0].pixels, images[1].pixels);
 }
 
 }  // namespace

@@ -167,8 +167,45 @@ class Warper {
     const auto turns = this->turns(warp);
     warp.images.assign(images_.size(), {});
     std::optional<TexelOrigins> origins;
+    // Colours first, as they alone tell of most that it is worse.
+    for (const bool colors : {true, false}) {
+      if (!bake(warp, part, colors, turns, origins)) return false;
+      const bool is_all = std::ranges::all_of(warp.images, [](const Image8& i) { return i.width > 0; });
+      if (!is_all && !measured) continue;
+      const PictureLosses loss = seen_loss_.of(warp.to, turns, warp.images, context_);
+      warp.loss = loss.mean();
+      if (measured && loss.is_worse_somewhere(plain_loss_)) return false;
+      if (is_all) break;
+    }
+    return true;
+  }
+
+  /// Seams of the smaller images as they were in the whole ones, if pictures lose less by it.
+  void fit_seams(AtlasWarp& warp) const {
+    const SeamFit fit(model_, from_, warp.to);
+    if (!fit.has_seams()) return;
+    std::vector<Image8> fitted = warp.images;
+    parallel_for_or_throw(context_, fitted.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (SeamFit::is_for(images_[i].meaning))
+          fit.fit(fitted[i], seen_loss_.image(i), images_[i].wrap_u, images_[i].wrap_v, context_);
+      }
+    });
+    const double loss = seen_loss_.of(warp.to, turns(warp), fitted, context_).mean();
+    if (loss >= warp.loss) return;
+    warp.loss = loss;
+    warp.images = std::move(fitted);
+  }
+
+ private:
+  bool is_color(std::size_t i) const { return images_[i].meaning.kind == TexelMeaning::Kind::color; }
+
+  /// Those that are colours, or all others. `origins` are kept for the next of the same size. False if texels
+  /// of several triangles would lie on each other.
+  bool bake(AtlasWarp& warp, int part, bool colors, std::span<const std::array<float, 3>> turns,
+            std::optional<TexelOrigins>& origins) const {
     for (std::size_t first = 0; first < images_.size(); ++first) {
-      if (warp.images[first].width > 0) continue;
+      if (warp.images[first].width > 0 || is_color(first) != colors) continue;
       const WarpedImage& image = images_[first];
       const int factor = oversampling(image, part);
       const int width = factor * image.width, height = factor * image.height;
@@ -186,29 +223,9 @@ class Warper {
         warp.images[alike[k]] = resized(large[k], image.width, image.height, sources[k].meaning, image.wrap_u,
                                         image.wrap_v, context_);
     }
-    const PictureLosses loss = seen_loss_.of(warp.to, turns, warp.images, context_);
-    warp.loss = loss.mean();
-    return !measured || !loss.is_worse_somewhere(plain_loss_);
+    return true;
   }
 
-  /// Seams of the smaller images as they were in the whole ones, if pictures lose less by it.
-  void fit_seams(AtlasWarp& warp) const {
-    const std::vector<SeamEdge> seams = seam_edges(model_, from_);
-    if (seams.empty()) return;
-    std::vector<Image8> fitted = warp.images;
-    parallel_for_or_throw(context_, fitted.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        fovea::fit_seams(fitted[i], warp.to, images_[i].wrap_u, images_[i].wrap_v, seams, model_,
-                         {&seen_loss_.image(i), from_, images_[i].meaning});
-      }
-    });
-    const double loss = seen_loss_.of(warp.to, turns(warp), fitted, context_).mean();
-    if (loss >= warp.loss) return;
-    warp.loss = loss;
-    warp.images = std::move(fitted);
-  }
-
- private:
   /// How normal maps turn at corners.
   std::vector<std::array<float, 3>> turns(const AtlasWarp& warp) const {
     if (!warp.is_moved) return {};
@@ -218,8 +235,8 @@ class Warper {
   std::vector<std::size_t> images_like(std::size_t first) const {
     const auto shape = [&](std::size_t i) {
       const WarpedImage& image = images_[i];
-      return std::tuple(image.image->width, image.image->height, image.width, image.height, image.wrap_u,
-                        image.wrap_v);
+      return std::tuple(is_color(i), image.image->width, image.image->height, image.width, image.height,
+                        image.wrap_u, image.wrap_v);
     };
     std::vector<std::size_t> alike;
     for (std::size_t i = first; i < images_.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
@@ -16,8 +17,6 @@ namespace {
 
 /// Rows that a thread bakes at once.
 constexpr std::size_t kBakedRowGrain = 16;
-/// Looks along the longer side of what a texel covers.
-constexpr int kAnisotropy = 4;
 
 std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255 + 0.5f); }
 
@@ -55,7 +54,7 @@ std::vector<Image8> baked(std::span<const BakeSource> sources, const TexelOrigin
   const auto bake_texel = [&](int x, int y) {
     const TexelOrigin& origin = origins.texels[origins.index(x, y)];
     const Footprint footprint =
-        sources[0].map->footprint(origin.uv, slopes[origin.face], sampler, kAnisotropy);
+        sources[0].map->footprint(origin.uv, slopes[origin.face], sampler, kBakeAnisotropy);
     for (std::size_t s = 0; s < sources.size(); ++s) {
       Rgba value = sources[s].map->sample(footprint);
       const bool is_color = sources[s].meaning.kind == TexelMeaning::Kind::color;
@@ -109,8 +108,26 @@ std::vector<std::uint8_t> read_texels(std::span<const AtlasFace> faces, int widt
 }
 
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context) {
+  fill_between({&image, 1}, faces, context);
+}
+
+void fill_between(std::span<Image8> images, std::span<const AtlasFace> faces, const Context& context) {
   if (faces.empty()) return;
-  fill_undrawn(image, read_texels(faces, image.width, image.height, context), context);
+  std::vector<bool> is_done(images.size());
+  for (std::size_t first = 0; first < images.size(); ++first) {
+    if (is_done[first]) continue;
+    const int width = images[first].width, height = images[first].height;
+    std::vector<std::size_t> alike;
+    for (std::size_t i = first; i < images.size(); ++i)
+      if (images[i].width == width && images[i].height == height) alike.push_back(i);
+    std::vector<Image8> together;
+    for (const std::size_t i : alike) together.push_back(std::move(images[i]));
+    fill_undrawn(together, read_texels(faces, width, height, context), context);
+    for (std::size_t k = 0; k < alike.size(); ++k) {
+      images[alike[k]] = std::move(together[k]);
+      is_done[alike[k]] = true;
+    }
+  }
 }
 
 }  // namespace fovea

@@ -14,6 +14,9 @@
 
 namespace fovea {
 
+/// Looks at most along the longer side of what a texel covers.
+inline constexpr int kBakeAnisotropy = 4;
+
 /// How a triangle's place in the old image changes from a texel of the new one to the next.
 std::vector<UvSlopes> texel_slopes(std::span<const AtlasFace> to, std::span<const AtlasFace> from, int width,
                                    int height);
@@ -29,7 +32,7 @@ struct BakeSource {
 };
 
 /// Images of one size as they look through triangles that have moved: each texel of the new ones is looked up
-/// where it comes from, as GPUs filter (`MipMap`, up to four looks along the longer side of what it covers).
+/// where it comes from, as GPUs filter (`MipMap`, `kBakeAnisotropy`).
 /// Normal maps turn with their tangents. What no triangle covers goes on from what is around
 /// (`fill_undrawn`).
 ///
@@ -52,5 +55,7 @@ std::vector<std::uint8_t> read_texels(std::span<const AtlasFace> faces, int widt
 /// beyond the triangles' borders among them; but for the texels beside those that are covered, which are
 /// mixed into what shows. In place. O(#F + #texels), parallel.
 void fill_between(Image8& image, std::span<const AtlasFace> faces, const Context& context);
+/// The same for several, of any sizes; what triangles cover is found once for each size.
+void fill_between(std::span<Image8> images, std::span<const AtlasFace> faces, const Context& context);
 
 }  // namespace fovea

@@ -90,6 +90,23 @@ MipMap::MipMap(const Image8& image, ColorEncoding encoding) {
 void MipMap::add_half(const Level& level) {
   const Level half{std::max(level.width / 2, 1), std::max(level.height / 2, 1),
                    static_cast<std::uint32_t>(texels_.size())};
+  if (level.width == 2 * half.width && level.height == 2 * half.height) {
+    // The same as below, in whole numbers.
+    for (int y = 0; y < half.height; ++y) {
+      for (int x = 0; x < half.width; ++x) {
+        const std::uint32_t above = level.at(2 * x, 2 * y), below = level.at(2 * x, 2 * y + 1);
+        Texel mean;
+        for (std::size_t k = 0; k < 4; ++k) {
+          const unsigned sum =
+              unsigned{texels_[above][k]} + texels_[above + 1][k] + texels_[below][k] + texels_[below + 1][k];
+          mean[k] = static_cast<std::uint16_t>((sum + 2) / 4);
+        }
+        texels_.push_back(mean);
+      }
+    }
+    levels_.push_back(half);
+    return;
+  }
   std::vector<Overlap> columns;
   for (int x = 0; x < half.width; ++x) columns.push_back(overlap(x, level.width, half.width));
   for (int y = 0; y < half.height; ++y) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/base/error.h"
+#include "fovea/base/float4.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
 #include "fovea/model/wrap.h"
@@ -111,15 +112,10 @@ class Mixing {
   std::array<float, 256> stored_{}, plain_{};
 };
 
-/// A decoded texel; channels that an image does not have are 0.
-using Decoded = std::array<float, 4>;
-
-Decoded added_up(std::span<const Filter::Tap> taps, const Decoded* row) {
-  Decoded sum{};
-  for (const Filter::Tap& tap : taps) {
-    const Decoded& texel = row[tap.texel];
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += tap.weight * texel[k];
-  }
+/// Of decoded texels; channels that an image does not have are 0.
+Float4 added_up(std::span<const Filter::Tap> taps, const Float4* row) {
+  Float4 sum{};
+  for (const Filter::Tap& tap : taps) sum += tap.weight * row[tap.texel];
   return sum;
 }
 
@@ -176,16 +172,20 @@ Image8 resized(const Image8& image, int width, int height, const TexelMeaning& m
   const Filter across(image.width, width, wrap_u);
   parallel_for(context, static_cast<std::size_t>(image.height), kResizedRowGrain,
                [&](std::size_t begin, std::size_t end) {
-                 std::vector<Decoded> decoded(static_cast<std::size_t>(image.width));
+                 std::vector<Float4> decoded(static_cast<std::size_t>(image.width));
                  for (std::size_t y = begin; y < end; ++y) {
                    const std::uint8_t* texel = image.at(0, static_cast<int>(y));
-                   for (Decoded& to : decoded) {
-                     mixing.decode(texel, to.data());
+                   for (Float4& to : decoded) {
+                     std::array<float, 4> values{};
+                     mixing.decode(texel, values.data());
+                     to = Float4{values[0], values[1], values[2], values[3]};
                      texel += channels;
                    }
                    float* out = rows.data() + y * narrow;
-                   for (int x = 0; x < width; ++x, out += channels)
-                     std::copy_n(added_up(across.taps(x), decoded.data()).begin(), channels, out);
+                   for (int x = 0; x < width; ++x) {
+                     const Float4 sum = added_up(across.taps(x), decoded.data());
+                     for (int k = 0; k < channels; ++k) *out++ = sum[k];
+                   }
                  }
                });
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "fovea/base/parallel.h"
 #include "fovea/base/srgb.h"
 #include "fovea/surface/half_edges.h"
 #include "fovea/texture/bake.h"
@@ -24,26 +25,21 @@ constexpr int kPointsPerTexel = 2;
 constexpr double kSeamWeight = 2;
 constexpr int kSolverRounds = 8;          // more sharpen what pictures of smaller copies do not show
 constexpr int kMostEdgePoints = 1 << 14;  // of a seam's edge
-constexpr int kSeamLooks = 4;
+/// Triangles, and edges of seams, that a thread looks at at once.
+constexpr std::size_t kFaceGrain = 256;
 /// A triangle that is all but a line in the image does not count more than this.
 constexpr double kMostDensity = 16;
 
 /// How much of the surface a texel of each triangle is: 1 in the mean.
-std::vector<double> densities(const Model& model, std::span<const AtlasFace> faces) {
-  const std::vector<double> scales = largest_scales(model);
-  std::vector<double> densities;
+std::vector<double> surface_densities(const Model& model, std::span<const AtlasFace> faces) {
+  std::vector<double> densities = surface_areas(model, faces);
   double area = 0, in_image = 0;
-  for (const AtlasFace& face : faces) {
-    const TriMesh& mesh = model.meshes[face.mesh].surface;
-    const auto at = [&](std::size_t k) {
-      return Vec3d(mesh.positions[mesh.triangles[face.face][k].index()]);
-    };
-    const double scale = scales[face.mesh];
-    const double flat = std::abs(cross(face.uv[1] - face.uv[0], face.uv[2] - face.uv[0])) / 2;
-    const double on_surface = scale * scale * triangle_area(at(0), at(1), at(2));
-    densities.push_back(flat > 0 ? on_surface / flat : 0);
-    area += on_surface;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const std::array<Vec2d, 3>& uv = faces[i].uv;
+    const double flat = std::abs(cross(uv[1] - uv[0], uv[2] - uv[0])) / 2;
+    area += densities[i];
     in_image += flat;
+    densities[i] = flat > 0 ? densities[i] / flat : 0;
   }
   const double mean = in_image > 0 ? area / in_image : 0;
   for (double& density : densities) density = mean > 0 ? std::min(density / mean, kMostDensity) : 0;
@@ -70,9 +66,17 @@ class LeastSquares {
     }
   }
 
+  /// What a place wants.
+  struct Point {
+    std::array<std::uint32_t, 4> texels{};  ///< Of those that are sought; kInvalid for others.
+    std::array<double, 4> weights{};
+    double counts = 1;
+    Colors rest{};  ///< Wanted, less what is shown.
+  };
+
   /// A place that wants `wanted()`, 0 … 255, if it reads texels that are sought.
   template <class Wanted>
-  void add(Vec2d uv, double counts, const Wanted& wanted) {
+  void point_at(Vec2d uv, double counts, const Wanted& wanted, std::vector<Point>& points) const {
     const auto around = taps(uv);
     const auto number = [&](const BilinearTap& tap) { return number_[texel(tap)]; };
     if (std::ranges::all_of(around, [&](const auto& tap) { return number(tap) == kInvalid; })) return;
@@ -83,8 +87,9 @@ class LeastSquares {
       for (std::size_t c = 0; c < channels(); ++c)
         point.rest[c] -= around[i].weight * image_.at(around[i].x, around[i].y)[c];
     }
-    points_.push_back(point);
+    points.push_back(point);
   }
+  void add(std::span<const Point> points) { points_.insert(points_.end(), points.begin(), points.end()); }
 
   /// What to add to each texel that is sought.
   std::vector<Colors> solved() const {
@@ -115,13 +120,6 @@ class LeastSquares {
   std::size_t channels() const { return static_cast<std::size_t>(image_.color_channels()); }
 
  private:
-  struct Point {
-    std::array<std::uint32_t, 4> texels{};  ///< Of those that are sought; kInvalid for others.
-    std::array<double, 4> weights{};
-    double counts = 1;
-    Colors rest{};  ///< Wanted, less what is shown.
-  };
-
   std::array<BilinearTap, 4> taps(Vec2d uv) const {
     return bilinear_taps({uv.x * image_.width, uv.y * image_.height}, image_.width, image_.height, sampler_);
   }
@@ -200,46 +198,65 @@ std::vector<SeamEdge> seam_edges(const Model& model, std::span<const AtlasFace> 
   return seams;
 }
 
-void fit_seams(Image8& image, std::span<const AtlasFace> faces, Wrap wrap_u, Wrap wrap_v,
-               std::span<const SeamEdge> seams, const Model& model, const WholeImage& whole) {
-  if (seams.empty() || whole.meaning.kind != TexelMeaning::Kind::color || whole.meaning.transparent) return;
+SeamFit::SeamFit(const Model& model, std::span<const AtlasFace> from, std::span<const AtlasFace> to)
+    : from_(from),
+      to_(to),
+      seams_(seam_edges(model, from)),
+      slopes_(texel_slopes(to, from, 1, 1)),
+      densities_(surface_densities(model, to)) {}
+
+void SeamFit::fit(Image8& image, const MipMap& whole, Wrap wrap_u, Wrap wrap_v,
+                  const Context& context) const {
+  if (seams_.empty()) return;
   const Sampler sampler{.wrap_u = wrap_u, .wrap_v = wrap_v, .mag_filter = {}, .min_filter = {}, .json = {}};
-  const std::vector<UvSlopes> slopes = texel_slopes(faces, whole.faces, image.width, image.height);
-  const std::vector<double> counts = densities(model, faces);
+  const Vec2d points{static_cast<double>(kPointsPerTexel) * image.width,
+                     static_cast<double>(kPointsPerTexel) * image.height};
   const auto shown = [&](Vec2d uv, std::uint32_t face) {
-    const Rgba look =
-        whole.map->sample(single(uv), scaled(slopes[face], 1.0 / kPointsPerTexel), sampler, kSeamLooks);
+    const UvSlopes slopes{slopes_[face].dx * static_cast<float>(1 / points.x),
+                          slopes_[face].dy * static_cast<float>(1 / points.y)};
+    const Rgba look = whole.sample(single(uv), slopes, sampler, kBakeAnisotropy);
     const auto value = [](float light) { return static_cast<double>(to_display(light)); };
     return LeastSquares::Colors{value(look.r), value(look.g), value(look.b)};
   };
   LeastSquares texels(image, sampler);
-  for (const SeamEdge& seam : seams) {
-    const AtlasFace& face = faces[seam.face];
+  for (const SeamEdge& seam : seams_) {
+    const AtlasFace& face = to_[seam.face];
     along_edge(image, face, seam.corner, [&](double t) { texels.seek(on_edge(face, seam.corner, t)); });
   }
-  for (const SeamEdge& seam : seams) {
-    const AtlasFace& face = faces[seam.face];
+  using Points = std::vector<LeastSquares::Point>;
+  const auto add_along = [&](const SeamEdge& seam, Points& found) {
+    const AtlasFace& face = to_[seam.face];
     // As long as it is on the surface.
-    const double weight = kSeamWeight * std::sqrt(counts[seam.face]);
+    const double weight = kSeamWeight * std::sqrt(densities_[seam.face]);
     along_edge(image, face, seam.corner, [&](double t) {
-      texels.add(on_edge(face, seam.corner, t), weight,
-                 [&] { return shown(on_edge(whole.faces[seam.face], seam.corner, t), seam.face); });
+      texels.point_at(
+          on_edge(face, seam.corner, t), weight,
+          [&] { return shown(on_edge(from_[seam.face], seam.corner, t), seam.face); }, found);
     });
-  }
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    const Vec2d size{static_cast<double>(kPointsPerTexel) * image.width,
-                     static_cast<double>(kPointsPerTexel) * image.height};
+  };
+  const auto add_inside = [&](std::uint32_t f, Points& found) {
     std::array<Vec2d, 3> triangle;
-    for (std::size_t k = 0; k < 3; ++k) triangle[k] = {faces[f].uv[k].x * size.x, faces[f].uv[k].y * size.y};
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = {to_[f].uv[k].x * points.x, to_[f].uv[k].y * points.y};
     const Barycentric barycentric(triangle);
     for_texel_rows(triangle, 1, [&](std::int64_t y, std::int64_t begin, std::int64_t end) {
       for (std::int64_t x = begin; x < end; ++x) {
         const Vec2d center{static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
-        texels.add({center.x / size.x, center.y / size.y}, counts[f],
-                   [&] { return shown(uv_at(whole.faces[f], clamped(barycentric.at(center))), f); });
+        texels.point_at(
+            {center.x / points.x, center.y / points.y}, densities_[f],
+            [&] { return shown(uv_at(from_[f], clamped(barycentric.at(center))), f); }, found);
       }
     });
-  }
+  };
+  const auto add_all = [&](std::size_t count, const auto& add_one) {
+    std::vector<Points> found((count + kFaceGrain - 1) / kFaceGrain);
+    parallel_for_or_throw(context, count, kFaceGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) add_one(i, found[begin / kFaceGrain]);
+    });
+    for (const Points& some : found) texels.add(some);
+  };
+  add_all(seams_.size(), [&](std::size_t i, Points& found) { add_along(seams_[i], found); });
+  add_all(to_.size(),
+          [&](std::size_t i, Points& found) { add_inside(static_cast<std::uint32_t>(i), found); });
   const std::vector<LeastSquares::Colors> change = texels.solved();
   const auto stride = static_cast<std::size_t>(image.channels);
   for (std::size_t i = 0; i < change.size(); ++i) {

@@ -115,7 +115,8 @@ SeenLoss::View SeenLoss::view(std::span<const AtlasFace> faces, std::span<const 
     return std::array{was.width(), was.height(), is.width(), is.height()};
   };
   for (std::size_t i = 0; i < images.size(); ++i) {
-    view.images.push_back(mip_map(images[i], meanings_[i]));
+    view.images.push_back(images[i].width > 0 ? mip_map(images[i], meanings_[i]) : MipMap());
+    if (images[i].width == 0) continue;
     const auto same =
         std::ranges::find_if(view.alike, [&](const auto& a) { return sizes(a[0]) == sizes(i); });
     if (same == view.alike.end()) {

@@ -47,7 +47,8 @@ class SeenLoss {
   const MipMap& image(std::size_t i) const { return before_.images[i]; }
 
   /// The mean over the surface with triangles and images like these, normal maps among them that turn at
-  /// corners by `turns` (`tangent_turns`; or none at all). Parallel.
+  /// corners by `turns` (`tangent_turns`; or none at all). Images without texels are left out, so that what
+  /// is lost by all is no less. Parallel.
   PictureLosses of(std::span<const AtlasFace> to, std::span<const std::array<float, 3>> turns,
                    std::span<const Image8> images, const Context& context) const;
   /// Texel by texel, the mean over the pictures if only the images change; 0 where nothing is drawn.

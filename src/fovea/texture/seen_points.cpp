@@ -1,6 +1,7 @@
 #include "fovea/texture/seen_points.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "fovea/base/srgb.h"
 #include "fovea/texture/texel_origin.h"
@@ -16,19 +17,25 @@ constexpr double kStepX = 0.7548776662466927, kStepY = 0.5698402909980532;
 
 }  // namespace
 
-std::vector<SurfacePoint> spread_points(const Model& model, std::span<const AtlasFace> faces,
-                                        std::span<const VertexField> field, std::size_t count) {
+std::vector<double> surface_areas(const Model& model, std::span<const AtlasFace> faces) {
   const std::vector<double> scales = largest_scales(model);
-  std::vector<double> ends;  // of the areas, added up
-  double area = 0;
+  std::vector<double> areas;
+  areas.reserve(faces.size());
   for (const AtlasFace& face : faces) {
     const TriMesh& mesh = model.meshes[face.mesh].surface;
     const auto at = [&](std::size_t k) {
       return Vec3d(mesh.positions[mesh.triangles[face.face][k].index()]);
     };
-    area += triangle_area(at(0), at(1), at(2)) * scales[face.mesh] * scales[face.mesh];
-    ends.push_back(area);
+    areas.push_back(triangle_area(at(0), at(1), at(2)) * scales[face.mesh] * scales[face.mesh]);
   }
+  return areas;
+}
+
+std::vector<SurfacePoint> spread_points(const Model& model, std::span<const AtlasFace> faces,
+                                        std::span<const VertexField> field, std::size_t count) {
+  std::vector<double> ends = surface_areas(model, faces);
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  const double area = ends.empty() ? 0 : ends.back();
   std::vector<SurfacePoint> points;
   if (!(area > 0)) return points;
   std::uint32_t face = 0;

@@ -27,6 +27,9 @@ struct SurfacePoint {
   double counts = 1;                ///< How much is looked at there.
 };
 
+/// [#faces] Areas on the surface, as the scene shows it largest. O(#F).
+std::vector<double> surface_areas(const Model& model, std::span<const AtlasFace> faces);
+
 /// Points that have about the same part of the surface each, as the scene shows it largest; none if it has no
 /// area. The field as for `texture_importance`. O(#F + count).
 std::vector<SurfacePoint> spread_points(const Model& model, std::span<const AtlasFace> faces,

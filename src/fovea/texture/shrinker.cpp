@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "fovea/base/error.h"
+#include "fovea/base/parallel.h"
 #include "fovea/io/image_codec.h"
 #include "fovea/model/texture_use.h"
 #include "fovea/texture/bake.h"
@@ -93,7 +95,8 @@ class Shrinker {
     if (change.fixed_because.empty()) return;
     const bool fill = atlas.fixed_because.empty();
     const std::vector<AtlasFace> faces = fill ? atlas_faces(result_.model, atlas) : std::vector<AtlasFace>{};
-    for (const int image : changing) resize(image, faces);
+    const ImageSights sights = this->sights(faces);
+    for (const int image : changing) resize(image, faces, sights);
   }
 
   /// Sets `rebake_` if the atlas's images are to be baked anew and can be.
@@ -135,6 +138,23 @@ class Shrinker {
       return rebake_->baked(picture, uses_[index(image)].meaning, context_);
     return rebake_->baked_normals(prepared_.new_maps.contains(image) ? nullptr : &picture,
                                   *normal_scale(image), picture.width, picture.height, context_);
+  }
+
+  /// Calls f(i) for each, in parallel; if some throw, what the first did.
+  template <class F>
+  void for_each_of(std::size_t count, const F& f) const {
+    std::vector<std::exception_ptr> thrown(count);
+    parallel_for_or_throw(context_, count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        try {
+          f(i);
+        } catch (...) {
+          thrown[i] = std::current_exception();
+        }
+      }
+    });
+    for (const std::exception_ptr& error : thrown)
+      if (error) std::rethrow_exception(error);
   }
 
   static std::size_t index(int image) { return static_cast<std::size_t>(image); }
@@ -206,13 +226,13 @@ class Shrinker {
       return "its images keep more than a quarter of their sides";
     try {
       const std::vector<AtlasFace> faces = atlas_faces(result_.model, atlas);
-      std::vector<Image8> unfilled, pictures;
-      for (const int image : atlas.images) {
-        unfilled.push_back(decoded(image));
-        if (rebake_ != nullptr) unfilled.back() = rebaked(image, unfilled.back());
-        pictures.push_back(unfilled.back());
-        fill_between(pictures.back(), faces, context_);
+      std::vector<Image8> unfilled(atlas.images.size());
+      for_each_of(unfilled.size(), [&](std::size_t i) { unfilled[i] = decoded(atlas.images[i]); });
+      if (rebake_ != nullptr) {
+        for (std::size_t i = 0; i < unfilled.size(); ++i) unfilled[i] = rebaked(atlas.images[i], unfilled[i]);
       }
+      std::vector<Image8> pictures = unfilled;
+      fill_between(pictures, faces, context_);
       std::vector<WarpedImage> wanted;
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         const WantedImage& size = this->wanted(atlas.images[i]);
@@ -229,22 +249,32 @@ class Shrinker {
       change.plain_loss = warp.plain_loss;
       change.maps = std::move(warp.maps);
       change.importance = std::move(warp.importance);
+      std::vector<std::optional<ImageOutput>> outputs(pictures.size());
       if (!warp.is_moved) {
+        const std::vector<int> asked = std::exchange(changing, {});
+        std::vector<std::size_t> smaller;
         for (std::size_t i = 0; i < pictures.size(); ++i) {
           const int image = atlas.images[i];
-          if (is_smaller(image) && std::erase(changing, image) > 0)
-            finish(image, nearer_of(image, std::move(warp.images[i]), unfilled[i], faces), faces);
+          if (std::ranges::find(asked, image) == asked.end()) continue;
+          if (is_smaller(image)) smaller.push_back(i);
+          if (!is_smaller(image)) changing.push_back(image);
         }
+        const ImageSights sights = this->sights(faces);
+        for_each_of(smaller.size(), [&](std::size_t k) {
+          const std::size_t i = smaller[k];
+          const int image = atlas.images[i];
+          outputs[i] =
+              encoded(image, nearer_of(image, std::move(warp.images[i]), unfilled[i], sights), faces);
+        });
+        for (const std::size_t i : smaller) set_or_keep(atlas.images[i], std::move(outputs[i]));
         return "it would gain nothing";
       }
-      std::vector<ImageOutput> outputs;
-      for (std::size_t i = 0; i < pictures.size(); ++i) {
-        std::optional<ImageOutput> output = encoded(atlas.images[i], warp.images[i], warp.to);
-        if (!output) return fmt::format("image {} would become larger", atlas.images[i]);
-        outputs.push_back(std::move(*output));
-      }
+      for_each_of(outputs.size(),
+                  [&](std::size_t i) { outputs[i] = encoded(atlas.images[i], warp.images[i], warp.to); });
+      for (std::size_t i = 0; i < outputs.size(); ++i)
+        if (!outputs[i]) return fmt::format("image {} would become larger", atlas.images[i]);
       result_.model = std::move(warp.model);
-      for (std::size_t i = 0; i < outputs.size(); ++i) set(atlas.images[i], std::move(outputs[i]));
+      for (std::size_t i = 0; i < outputs.size(); ++i) set(atlas.images[i], std::move(*outputs[i]));
       return "";
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::cancelled) throw;
@@ -260,17 +290,20 @@ class Shrinker {
 
   /// A smaller image: what was filled between charts unless pictures show more of what lay there: large
   /// halves keep that.
-  Image8 nearer_of(int image, Image8 filled, const Image8& picture, std::span<const AtlasFace> faces) const {
+  Image8 nearer_of(int image, Image8 filled, const Image8& picture, const ImageSights& sights) const {
     const ImageUse& use = uses_[index(image)];
     Image8 unfilled = sized(picture, wanted(image), use);
-    return is_nearer(unfilled, filled, picture, use, faces) ? unfilled : filled;
+    return is_nearer(unfilled, filled, picture, use, sights) ? unfilled : filled;
+  }
+
+  ImageSights sights(std::span<const AtlasFace> faces) const {
+    return {result_.model, faces, field_, {kPictureSizes.begin(), kPictureSizes.end()}};
   }
 
   /// Whether pictures of all sizes together tell one of two smaller images less from the whole than the
   /// other.
   bool is_nearer(const Image8& one, const Image8& other, const Image8& whole, const ImageUse& use,
-                 std::span<const AtlasFace> faces) const {
-    const ImageSights sights(result_.model, faces, field_, {kPictureSizes.begin(), kPictureSizes.end()});
+                 const ImageSights& sights) const {
     const ImageLoss loss(sights, whole, use, context_);
     const auto together = [&](const Image8& image) {
       double sum = 0;
@@ -280,7 +313,7 @@ class Shrinker {
     return together(one) < together(other);
   }
 
-  void resize(int image, std::span<const AtlasFace> faces) {
+  void resize(int image, std::span<const AtlasFace> faces, const ImageSights& sights) {
     try {
       const ImageUse& use = uses_[index(image)];
       const WantedImage& size = wanted(image);
@@ -293,7 +326,7 @@ class Shrinker {
         const bool is_same = filled.pixels == picture.pixels;
         filled = sized(filled, size, use);
         picture =
-            size.file || is_same ? std::move(filled) : nearer_of(image, std::move(filled), picture, faces);
+            size.file || is_same ? std::move(filled) : nearer_of(image, std::move(filled), picture, sights);
       }
       finish(image, picture, faces, old);
     } catch (const Error& error) {
@@ -305,9 +338,14 @@ class Shrinker {
   /// Encodes the picture; `old` is what it was baked anew from, at the same size, or empty.
   void finish(int image, const Image8& picture, std::span<const AtlasFace> faces, const Image8& old = {}) {
     std::optional<ImageOutput> output = encoded(image, picture, faces);
-    if (!output) return keep(image, "in the wanted format it would be larger");
-    if (old.width > 0 && !prepared_.new_maps.contains(image) && !is_better(image, old, picture, *output))
+    if (output && old.width > 0 && !prepared_.new_maps.contains(image) &&
+        !is_better(image, old, picture, *output))
       return keep(image, "baked anew it would show no more");
+    set_or_keep(image, std::move(output));
+  }
+
+  void set_or_keep(int image, std::optional<ImageOutput> output) {
+    if (!output) return keep(image, "in the wanted format it would be larger");
     set(image, std::move(*output));
   }
 
