@@ -39,6 +39,8 @@ class Fit : public Verb {
         "file that still looks as much like the original as asked. It measures both on the model itself: "
         "the same bytes are worth more in triangles here and in texels there.",
         {{"fovea fit helmet.glb -o helmet-500k.glb --bytes 500KB", "The best of at most 500,000 bytes."},
+         {"fovea fit helmet.glb -o web.glb --bytes 1MB,300KB,80KB",
+          "Three files, web-1MB.glb, web-300KB.glb and web-80KB.glb."},
          {"fovea fit helmet.glb -o icon.glb --bytes 60KB --view-size 128",
           "For small pictures: other triangles and texels are worth it."},
          {"fovea fit chair.glb -o chair-same.glb --match ms-ssim=0.98@512",
@@ -53,7 +55,10 @@ class Fit : public Verb {
     arguments.add(model_argument(input_));
     arguments.add(
         "Budget",
-        {describe_bytes("Bytes of the whole file at most, such as 500KB.", bytes_),
+        {{"bytes",
+          "Bytes of the whole file at most, such as 500KB. Of several, falling, such as 1MB,300KB,80KB, each "
+          "gets a file, small-300KB.glb for -o small.glb: that takes less time than one by one.",
+          &bytes_, "sizes"},
          {"match",
           "Instead: the smallest file that is as like the original as this, psnr, ms-ssim or flip, in "
           "pictures of so many pixels (--view-size if left out).",
@@ -84,20 +89,19 @@ class Fit : public Verb {
     need_triangles(input);
     std::optional<BudgetFit> fit;
     session.phase("ladders", input.path, [&] { fit.emplace(input.model, options_, session.context); });
-    const FitResult result = session.phase(
-        "fit", input.path, [&] { return budget_ ? fit->within(*budget_) : fit->like(metric_, likeness_); });
-    if (result.cancelled) return write_cancelled(result, session);
-    if (!result.reached && !allow_miss_) return miss(result, session);
+    const std::vector<FitResult> results = session.phase("fit", input.path, [&] { return find(*fit); });
+    const FitResult& last = results.back();
+    if (last.cancelled) return write_cancelled(results, session);
+    if (!last.reached && !allow_miss_) return miss(results, session);
     FitCurve curve;
-    if (!curve_.empty()) curve = session.phase("curve", [&] { return make_curve(*fit, result); });
+    if (!curve_.empty()) curve = session.phase("curve", [&] { return make_curve(*fit, results); });
     std::vector<CurvePicture> pictures;
     if (lower_extension(curve_) == ".html")
       pictures = session.phase("curve", [&] { return curve_pictures(*fit, curve.way, session.context); });
-    const auto files = session.phase(
-        "write", [&] { return write_model(result.model, output_, options_.form.write, session.context); });
-    const Snapshot after = snapshot(result.model, measure_output(files, result.model));
+    const std::vector<Snapshot> after =
+        session.phase("write", [&] { return write(results, session.context); });
     write_curve(curve, pictures);
-    tell(session, before, after, result);
+    tell(session, before, after, results);
     return 0;
   }
 
@@ -106,20 +110,69 @@ class Fit : public Verb {
     check_input(input_);
     check_output(output_, "small.glb", {input_}, options_.form.write.force, [&](const auto& path) {
       check_extension(path, "fitted models", {".glb", ".gltf"});
-      fovea::check_output(path, options_.form.write);
     });
-    if (!curve_.empty()) {
-      check_output(curve_, "curve.json", {input_}, options_.form.write.force,
-                   [&](const auto& path) { check_curve_output(path, options_.form.write.force); });
-    }
-    options_.form = file_form(output_, options_.form.write);
     if (bytes_.empty() == match_.empty()) {
       throw Error(ErrorKind::usage, bytes_.empty() ? "no budget is given" : "there are two targets", {},
                   "give --bytes, for example --bytes 500KB, or --match, for example --match ms-ssim=0.98");
     }
-    if (!bytes_.empty()) budget_ = parse_bytes("--bytes", bytes_);
-    if (budget_ && curve_.empty()) options_.most_bytes = *budget_;
+    outputs_ = {output_};
+    if (!bytes_.empty()) budgets_ = parse_byte_list("--bytes", bytes_);
+    if (budgets_.size() > 1) outputs_ = outputs_of_budgets();
+    for (const std::string& path : outputs_) {
+      check_output(path, "small.glb", {input_}, options_.form.write.force,
+                   [&](const auto& place) { fovea::check_output(place, options_.form.write); });
+    }
+    if (!curve_.empty()) {
+      check_output(curve_, "curve.json", {input_}, options_.form.write.force,
+                   [&](const auto& path) { check_curve_output(path, options_.form.write.force); });
+    }
+    // Of a .gltf the longest name takes most bytes.
+    const auto longest = std::ranges::max_element(outputs_, {}, &std::string::size);
+    options_.form = file_form(*longest, options_.form.write);
+    if (!budgets_.empty() && curve_.empty()) options_.most_bytes = budgets_.front();
     if (!match_.empty()) parse_match();
+  }
+
+  /// small.glb for 600KB and 150KB: small-600KB.glb, small-150KB.glb.
+  std::vector<std::string> outputs_of_budgets() const {
+    std::vector<std::string> outputs;
+    std::string budgets = bytes_;
+    std::erase(budgets, ' ');
+    for (std::size_t begin = 0; begin < budgets.size();) {
+      const std::size_t end = std::min(budgets.find(',', begin), budgets.size());
+      std::filesystem::path path = output_;
+      path.replace_filename(path.stem().string() + "-" + budgets.substr(begin, end - begin) +
+                            path.extension().string());
+      outputs.push_back(path.string());
+      begin = end + 1;
+    }
+    return outputs;
+  }
+
+  /// For each budget, or up to one that is not reached or at which it was cancelled.
+  std::vector<FitResult> find(BudgetFit& fit) const {
+    std::vector<FitResult> results;
+    if (budgets_.empty()) results.push_back(fit.like(metric_, likeness_));
+    for (const std::uint64_t budget : budgets_) {
+      try {
+        results.push_back(fit.within(budget));
+      } catch (const Error& error) {
+        if (error.kind() != ErrorKind::cancelled || results.empty()) throw;
+        results.back().cancelled = true;
+      }
+      if (results.back().cancelled || (!results.back().reached && !allow_miss_)) break;
+    }
+    return results;
+  }
+
+  std::vector<Snapshot> write(const std::vector<FitResult>& results, Context& context) const {
+    std::vector<Snapshot> written;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const Model& model = results[i].model;
+      written.push_back(snapshot(
+          model, measure_output(write_model(model, outputs_[i], options_.form.write, context), model)));
+    }
+    return written;
   }
 
   void parse_match() {
@@ -145,10 +198,12 @@ class Fit : public Verb {
   }
 
   /// Says what there is instead; nothing is written.
-  int miss(const FitResult& result, Session& session) const {
+  int miss(const std::vector<FitResult>& results, Session& session) const {
+    const FitResult& result = results.back();
     session.report["result"] = result_json(result);
     const std::string hint = "--compression meshopt and --texture-format webp take less";
-    if (budget_) return too_many_bytes(session, *budget_, result.chosen.bytes, hint);
+    if (!budgets_.empty())
+      return too_many_bytes(session, budgets_[results.size() - 1], result.chosen.bytes, hint);
     session.say("error: stored as asked, not even the original is that like itself; nothing is written");
     return target_code(session, false, false);
   }
@@ -162,29 +217,54 @@ class Fit : public Verb {
     return json;
   }
 
+  /// The results, as one or as a list, and their files.
+  void report(Session& session, const std::vector<FitResult>& results,
+              const std::vector<Snapshot>& after) const {
+    session.report["outputs"] = Json::array();
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      session.report["outputs"].push_back(file_json(outputs_[i], after[i].bytes));
+      Json result = result_json(results[i]);
+      result["bytes"] = after[i].bytes.files;
+      if (outputs_.size() == 1) {
+        session.report["after"] = to_json(after[i]);
+        session.report["result"] = std::move(result);
+      } else {
+        result["budget"] = budgets_[i];
+        result["after"] = to_json(after[i]);
+        session.report["results"].push_back(std::move(result));
+      }
+    }
+  }
+
   /// The best that was known is there, all the same.
-  int write_cancelled(const FitResult& result, Session& session) const {
+  int write_cancelled(const std::vector<FitResult>& results, Session& session) const {
     Context context;
-    write_model(result.model, output_, options_.form.write, context);
-    session.report["result"] = result_json(result);
-    session.say(fmt::format("cancelled: the best so far is written, {} triangles in {}",
-                            count_text(result.chosen.triangles), bytes_text(result.chosen.bytes)));
+    const std::vector<Snapshot> after = write(results, context);
+    report(session, results, after);
+    const FitPoint& chosen = results.back().chosen;
+    session.say(fmt::format(
+        "cancelled: the best so far is written, {} triangles in {}{}", count_text(chosen.triangles),
+        bytes_text(chosen.bytes),
+        outputs_.size() > 1 ? fmt::format("; {} of {} files", results.size(), outputs_.size()) : ""));
     constexpr int kCancelled = 130;
     return kCancelled;
   }
 
-  FitCurve make_curve(BudgetFit& fit, const FitResult& result) const {
-    return {std::filesystem::path(input_).filename().string(), options_.view_size, result.chosen, fit.way(),
-            fit.all()};
+  FitCurve make_curve(BudgetFit& fit, const std::vector<FitResult>& results) const {
+    std::vector<FitPoint> chosen;
+    for (const FitResult& result : results) chosen.push_back(result.chosen);
+    return {std::filesystem::path(input_).filename().string(), options_.view_size, std::move(chosen),
+            fit.way(), fit.all()};
   }
 
   void write_curve(const FitCurve& curve, const std::vector<CurvePicture>& pictures) const {
     if (curve_.empty()) return;
     if (lower_extension(curve_) == ".html")
       return write_text(curve_, curve_page(curve, pictures), options_.form.write.force);
-    Json json = to_json(curve.chosen);
+    Json json;
     json["view_size"] = curve.view_size;
-    for (const auto& [name, points] : {std::pair{"path", &curve.way}, {"all", &curve.all}}) {
+    for (const auto& [name, points] :
+         {std::pair{"chosen", &curve.chosen}, {"path", &curve.way}, {"all", &curve.all}}) {
       if (points == &curve.all && points->empty()) continue;
       json[name] = Json::array();
       for (const FitPoint& point : *points) json[name].push_back(to_json(point));
@@ -192,20 +272,32 @@ class Fit : public Verb {
     write_text(curve_, dump(json) + "\n", options_.form.write.force);
   }
 
-  void tell(Session& session, const Snapshot& before, const Snapshot& after, const FitResult& result) const {
-    session.report["outputs"] = Json::array({file_json(output_, after.bytes)});
+  void tell(Session& session, const Snapshot& before, const std::vector<Snapshot>& after,
+            const std::vector<FitResult>& results) const {
+    report(session, results, after);
     if (!curve_.empty()) session.report["outputs"].push_back(file_json(curve_));
-    session.report["after"] = to_json(after);
-    session.report["result"] = result_json(result);
-    const FitPoint& chosen = result.chosen;
-    const std::string likeness = std::isfinite(chosen.psnr_db)
-                                     ? fmt::format("{:.2f} dB from the original", chosen.psnr_db)
-                                     : std::string("as the original");
-    session.print_summary(
-        fmt::format("{} -> {}\n{}likeness {} at {} pixels, base colour and lit; {} models were drawn to find "
-                    "it\ntime     {}\n",
-                    printable(input_), printable(output_), comparison_text(before, after), likeness,
-                    options_.view_size, result.pictures, session.spent_text()));
+    const std::string seen =
+        fmt::format("at {} pixels, base colour and lit; {} models were drawn to find {}\n",
+                    options_.view_size, results.back().pictures, results.size() > 1 ? "them" : "it");
+    const auto likeness = [](const FitPoint& point) {
+      return std::isfinite(point.psnr_db) ? fmt::format("{:.2f} dB from the original", point.psnr_db)
+                                          : std::string("as the original");
+    };
+    std::string text;
+    if (results.size() == 1) {
+      text = fmt::format("{} -> {}\n{}likeness {} {}", printable(input_), printable(outputs_[0]),
+                         comparison_text(before, after[0]), likeness(results[0].chosen), seen);
+    } else {
+      TextTable table("lrrrl");
+      table.row({"", "bytes", "triangles", "images", "likeness"});
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        const FitPoint& chosen = results[i].chosen;
+        table.row({printable(outputs_[i]), bytes_text(after[i].bytes.files), count_text(chosen.triangles),
+                   bytes_text(chosen.image_bytes), likeness(chosen)});
+      }
+      text = fmt::format("{} -> {} files\n{}{}", printable(input_), results.size(), table.text(0), seen);
+    }
+    session.print_summary(fmt::format("{}time     {}\n", text, session.spent_text()));
   }
 
   static FitOptions first_options() {
@@ -215,7 +307,8 @@ class Fit : public Verb {
   }
 
   std::string input_, output_, curve_, bytes_, match_;
-  std::optional<std::uint64_t> budget_;
+  std::vector<std::string> outputs_;    ///< One for each budget, or for the likeness.
+  std::vector<std::uint64_t> budgets_;  ///< Of `bytes_`, falling.
   FitMetric metric_ = FitMetric::psnr;  ///< Of `match_`.
   double likeness_ = 0;
   bool allow_miss_ = false;

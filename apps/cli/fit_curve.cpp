@@ -47,9 +47,8 @@ std::string caption(const FitPoint& point) {
 class Chart {
  public:
   explicit Chart(const FitCurve& curve) {
-    for (const auto* points : {&curve.way, &curve.all})
+    for (const auto* points : {&curve.way, &curve.all, &curve.chosen})
       for (const FitPoint& point : *points) include(point);
-    include(curve.chosen);
     if (!(low_db_ < high_db_)) low_db_ -= 1, high_db_ = low_db_ + 2;
     if (!(low_ < high_)) high_ = low_ + 1;
   }
@@ -64,7 +63,8 @@ class Chart {
       if (std::isfinite(point.psnr_db)) line += fmt::format("{:.1f},{:.1f} ", x(point), y(point));
     out += fmt::format("<polyline class=\"way\" points=\"{}\"/>\n", line);
     for (const FitPoint& point : curve.way) out += dot(point, "way", 3.5);
-    return out + dot(curve.chosen, "chosen", 6) + "</svg>\n";
+    for (const FitPoint& point : curve.chosen) out += dot(point, "chosen", 6);
+    return out + "</svg>\n";
   }
 
  private:
@@ -156,9 +156,8 @@ std::string curve_page(const FitCurve& curve, const std::vector<CurvePicture>& p
       "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>{0}: likeness over "
       "bytes</title>\n<style>{1}"
       "</style>\n<h1>{0}</h1>\n<p>What each number of bytes gives, seen at {2} pixels: likeness is the "
-      "signal-to-noise ratio of pictures from all around, base colour and lit, over what is covered. The "
-      "ring is what was "
-      "written{3}.</p>\n",
+      "signal-to-noise ratio of pictures from all around, base colour and lit, over what is covered. "
+      "Rings are what was written{3}.</p>\n",
       escaped(curve.title), kStyle, curve.view_size,
       curve.all.empty() ? "" : "; grey are all pairs, blue their lower hull");
   out += Chart(curve).svg(curve);
@@ -170,13 +169,13 @@ std::string curve_page(const FitCurve& curve, const std::vector<CurvePicture>& p
         kPictureSize, encode_base64(picture.png), caption(curve.way[picture.point]));
   }
   out += "<table>\n<tr><th>bytes</th><th>triangles</th><th>of images</th><th>likeness</th></tr>\n";
-  bool is_told = false;
+  std::size_t told = 0;
   for (const FitPoint& point : curve.way) {
-    if (!is_told && point.bytes <= curve.chosen.bytes)
-      out += table_row(curve.chosen, "chosen"), is_told = true;
+    while (told < curve.chosen.size() && point.bytes <= curve.chosen[told].bytes)
+      out += table_row(curve.chosen[told++], "chosen");
     out += table_row(point, "way");
   }
-  if (!is_told) out += table_row(curve.chosen, "chosen");
+  while (told < curve.chosen.size()) out += table_row(curve.chosen[told++], "chosen");
   return out + "</table>\n</html>\n";
 }
 

@@ -11,11 +11,11 @@ namespace fovea::cli {
 
 Json to_json(const FitPoint& point);
 
-/// What any number of bytes would give, and what one gave.
+/// What any number of bytes would give, and what some gave.
 struct FitCurve {
   std::string title;  ///< Of the model.
   std::int64_t view_size = 512;
-  FitPoint chosen;
+  std::vector<FitPoint> chosen;
   std::vector<FitPoint> way;  ///< From the original down.
   std::vector<FitPoint> all;  ///< Those that were measured beside it; empty unless all were.
 };

@@ -304,11 +304,6 @@ class Lods : public Verb {
     if (given > 1)
       throw Error(ErrorKind::usage, "levels are asked for in several ways", {},
                   "give one of --triangles, --coverage, --distances and --bytes");
-    for (std::size_t i = 1; i < options_.bytes.size(); ++i) {
-      if (options_.bytes[i] >= options_.bytes[i - 1])
-        throw Error(ErrorKind::usage, "numbers of bytes do not fall", "--bytes",
-                    "levels go from the finest to the coarsest");
-    }
   }
 
   /// Where levels are to go: a folder that is there or can be made, with nothing in the way.

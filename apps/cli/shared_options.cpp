@@ -92,11 +92,14 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
 
 Option describe_bytes(const std::string& help, std::string& text) { return {"bytes", help, &text, "size"}; }
 
-std::vector<std::uint64_t> parse_byte_list(const std::string& option, const std::string& text) {
+std::vector<std::uint64_t> parse_byte_list(const std::string& option, std::string text) {
+  std::erase(text, ' ');
   std::vector<std::uint64_t> numbers;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     numbers.push_back(parse_bytes(option, text.substr(begin, end - begin)));
+    if (numbers.size() > 1 && numbers.back() >= numbers[numbers.size() - 2])
+      throw Error(ErrorKind::usage, "numbers of bytes do not fall", option, "give the largest first");
     begin = end + 1;
   }
   return numbers;

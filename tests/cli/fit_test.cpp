@@ -49,6 +49,53 @@ TEST_F(FitVerb, TheFileTakesNoMoreThanAsked) {
   }
 }
 
+TEST_F(FitVerb, SeveralBudgetsGetAFileEach) {
+  const Outcome outcome = fit({"-o", out("o.glb"), "--bytes", "40KB, 15kb,8192", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json results = outcome.json()["results"], outputs = outcome.json()["outputs"];
+  ASSERT_EQ(results.size(), 3u);
+  double last = 0;
+  const std::pair<const char*, unsigned> wanted[] = {
+      {"o-40KB.glb", 40000}, {"o-15kb.glb", 15000}, {"o-8192.glb", 8192}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string path = out(wanted[i].first);
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    EXPECT_LE(size, wanted[i].second);
+    EXPECT_EQ(results[i]["budget"], wanted[i].second);
+    EXPECT_EQ(results[i]["bytes"], size);
+    EXPECT_EQ(results[i]["reached"], true);
+    EXPECT_EQ(outputs[i]["path"], path);
+    EXPECT_GT(results[i]["loss"], last) << "fewer bytes show less";
+    last = results[i]["loss"];
+  }
+  EXPECT_FALSE(std::filesystem::exists(out("o.glb")));
+  EXPECT_FALSE(outcome.json().contains("result"));
+}
+
+TEST_F(FitVerb, IfOneOfSeveralCannotBeNothingIsWritten) {
+  const Outcome outcome = fit({"-o", out("o.glb"), "--bytes", "40KB,500"});
+  EXPECT_EQ(outcome.code, 8);
+  EXPECT_THAT(outcome.err, HasSubstr("no file takes 500 B or less: the smallest takes"));
+  EXPECT_FALSE(std::filesystem::exists(out("o-40KB.glb")));
+  EXPECT_FALSE(std::filesystem::exists(out("o-500.glb")));
+}
+
+TEST_F(FitVerb, OfSeveralAsGltfEachKeepsToItsBytes) {
+  const Outcome outcome =
+      fit({"-o", out("o.gltf"), "--bytes", "30KB,9KB", "--curve", out("c.html"), "--views", "tetrahedron"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("o-30KB.gltf"));
+  for (const auto& [name, bytes] : {std::pair{"o-30KB", 30000u}, {"o-9KB", 9000u}}) {
+    std::uintmax_t size = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(out("")))
+      if (entry.path().filename().string().starts_with(name)) size += entry.file_size();
+    EXPECT_GT(size, 0u);
+    EXPECT_LE(size, bytes);
+  }
+  const std::string page = read_text(out("c.html"));
+  EXPECT_NE(page.find("circle class=\"chosen\""), page.rfind("circle class=\"chosen\"")) << "two rings";
+}
+
 TEST_F(FitVerb, AsGltfTheFilesTogetherTakeNoMore) {
   const Outcome outcome = fit({"-o", out("o.gltf"), "--bytes", "30KB", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -64,6 +111,8 @@ TEST_F(FitVerb, WritesTheCurve) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json curve = nlohmann::json::parse(read_text(out("curve.json")));
   ASSERT_GT(curve["path"].size(), 3u);
+  ASSERT_EQ(curve["chosen"].size(), 1u);
+  EXPECT_LE(curve["chosen"][0]["bytes"], 10000);
   EXPECT_GT(curve["path"][0]["bytes"], curve["path"][1]["bytes"]);
   EXPECT_THAT(outcome.out, HasSubstr("dB from the original at 96 pixels"));
 }
@@ -195,6 +244,8 @@ TEST_F(FitVerb, WrongRequestsAreRefused) {
   refuses({"--bytes", "lots"}, "'lots' is no number of bytes");
   refuses({"--bytes", "-5KB"}, "is no number of bytes");
   refuses({"--bytes", "5 parsecs"}, "is no number of bytes");
+  refuses({"--bytes", "5KB,9KB"}, "numbers of bytes do not fall");
+  refuses({"--bytes", "5KB,,1KB"}, "'' is no number of bytes");
   refuses({"--match", "looks=1"}, "is no likeness");
   refuses({"--match", "ms-ssim=1.5"}, "is no likeness");
   refuses({"--match", "flip=0.1@7"}, "is no likeness");

@@ -54,6 +54,7 @@ class BudgetFit::Finder {
     FitResult result;
     bytes_ = bytes;
     best_.reset();
+    for (std::size_t i = 0; i < weights_.size(); ++i) set_weight(i, 1);
     try {
       find(result);
     } catch (const Error& error) {
@@ -383,17 +384,21 @@ class BudgetFit::Finder {
       for (const double factor : {4.0, 0.25}) {
         const FitChoice base = best_->choice;
         const double before = best_->loss.value;
-        textures->set_weight(image, weights_[image] * factor);
+        const double weight = weights_[image];
+        set_weight(image, weight * factor);
         FitChoice choice = base;
         choice.ways = textures->within(static_cast<std::uint64_t>(room_beside(base, base)), false);
         if (choice.ways != base.ways) consider(choice);
-        if (best_->loss.value < before) {
-          weights_[image] *= factor;
-          break;
-        }
-        textures->set_weight(image, weights_[image]);
+        if (best_->loss.value < before) break;
+        set_weight(image, weight);
       }
     }
+  }
+
+  void set_weight(std::size_t image, double weight) {
+    if (weights_[image] == weight) return;
+    weights_[image] = weight;
+    ladders_.textures()->set_weight(image, weight);
   }
 
   /// As many triangles as there is room for; also returned where they look no better.
