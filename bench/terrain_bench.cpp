@@ -412,6 +412,9 @@ class Analysis {
     add("pruning, by byte", [&] { return prune(joint_, 0); });
     add(fmt::format("pruning, by byte, up to {} rungs", kAhead), [&] { return prune(joint_, 0, kAhead); });
     add("growing, by byte", [&] { return grow(joint_, ~std::uint64_t{0}); });
+    // As fit.h has it.
+    ways_.push_back({fmt::format("hull of what pruning by up to {} drew", kAhead), lower_hull(ways_[2].drawn),
+                     ways_[2].drawn});
   }
 
   void print() const {
@@ -588,7 +591,7 @@ int run(int count, char** arguments) {
     if (!file.empty()) {
       points.open(file);
       points << "land,ladders,mesh,texture,mesh_bytes,texture_bytes,bytes,mse,psnr,hull,prune_step,prune_"
-                "byte,prune_ahead,grow\n";
+                "byte,prune_ahead,grow,prune_ahead_hull\n";
     }
     Context context;
     for (const Land& land : lands(context)) measure_land(land, points, views, context);

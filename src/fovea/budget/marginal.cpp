@@ -52,13 +52,14 @@ std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes, 
   std::vector<std::optional<Next>> next(ladders.rungs.size());
   while (path.back().bytes > bytes) {
     const JointPoint at = path.back();
+    const auto step = [&](std::size_t ladder, int by) {
+      return Next{slope(at, measured(moved(at.rungs, ladder, by))), by, at.rungs};
+    };
     const auto measure = [&](std::size_t ladder) {
-      next[ladder].reset();
       for (std::size_t n = 1;
            n <= std::max<std::size_t>(ahead, 1) && at.rungs[ladder] + n < ladders.rungs[ladder]; ++n) {
-        const int by = static_cast<int>(n);
-        const double lost = slope(at, measured(moved(at.rungs, ladder, by)));
-        if (!next[ladder] || lost < next[ladder]->slope) next[ladder] = Next{lost, by, at.rungs};
+        const Next found = step(ladder, static_cast<int>(n));
+        if (!next[ladder] || found.slope < next[ladder]->slope) next[ladder] = found;
       }
     };
     std::optional<std::size_t> best;
@@ -69,7 +70,7 @@ std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes, 
     }
     if (!best) break;
     if (next[*best]->from != at.rungs) {
-      measure(*best);
+      next[*best] = step(*best, next[*best]->rungs);
       continue;  // another may be better now
     }
     path.push_back(measured(moved(at.rungs, *best, next[*best]->rungs)));

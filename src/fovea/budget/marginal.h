@@ -30,8 +30,8 @@ struct JointPoint {
 /// last.
 ///
 /// What a step loses is measured when it comes up and kept until its own ladder moves on, as losses of meshes
-/// and of textures nearly add up; before a step is taken, one that was measured elsewhere is measured again.
-/// Losses are asked for about once or twice for each step taken.
+/// and of textures nearly add up; before a step is taken, one that was measured elsewhere is measured again,
+/// as far as it went. Losses are asked for about once or twice for each step taken.
 ///
 /// A step goes down one rung, or up to `ahead` of them if that loses less for each byte: where losses rise by
 /// fits and starts, a rung that is bad for its bytes hides a good one below it, and one at a time never gets

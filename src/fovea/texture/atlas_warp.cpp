@@ -167,16 +167,19 @@ class Warper {
     const auto turns = this->turns(warp);
     warp.images.assign(images_.size(), {});
     std::optional<TexelOrigins> origins;
-    // Colours first, as they alone tell of most that it is worse.
-    for (const bool colors : {true, false}) {
-      if (!bake(warp, part, colors, turns, origins)) return false;
-      const bool is_all = std::ranges::all_of(warp.images, [](const Image8& i) { return i.width > 0; });
-      if (!is_all && !measured) continue;
-      const PictureLosses loss = seen_loss_.of(warp.to, turns, warp.images, context_);
-      warp.loss = loss.mean();
-      if (measured && loss.is_worse_somewhere(plain_loss_)) return false;
-      if (is_all) break;
-    }
+    PictureLosses loss;
+    const auto bake_and_look = [&](std::span<const std::size_t> images) {
+      if (images.empty()) return true;
+      if (!bake(warp, part, images, turns, origins)) return false;
+      loss = seen_loss_.of(warp.to, turns, warp.images, context_);
+      return !measured || !loss.is_worse_somewhere(plain_loss_);
+    };
+    std::vector<std::size_t> colors, others;
+    for (std::size_t i = 0; i < images_.size(); ++i)
+      (measured && images_[i].meaning.kind == TexelMeaning::Kind::color ? colors : others).push_back(i);
+    // They alone tell of most warps that they are worse.
+    if (!bake_and_look(colors) || !bake_and_look(others)) return false;
+    warp.loss = loss.mean();
     return true;
   }
 
@@ -198,14 +201,12 @@ class Warper {
   }
 
  private:
-  bool is_color(std::size_t i) const { return images_[i].meaning.kind == TexelMeaning::Kind::color; }
-
-  /// Those that are colours, or all others. `origins` are kept for the next of the same size. False if texels
-  /// of several triangles would lie on each other.
-  bool bake(AtlasWarp& warp, int part, bool colors, std::span<const std::array<float, 3>> turns,
-            std::optional<TexelOrigins>& origins) const {
-    for (std::size_t first = 0; first < images_.size(); ++first) {
-      if (warp.images[first].width > 0 || is_color(first) != colors) continue;
+  /// Some of the images. `origins` are kept for the next of the same size. False if texels of several
+  /// triangles would lie on each other.
+  bool bake(AtlasWarp& warp, int part, std::span<const std::size_t> wanted,
+            std::span<const std::array<float, 3>> turns, std::optional<TexelOrigins>& origins) const {
+    for (const std::size_t first : wanted) {
+      if (warp.images[first].width > 0) continue;
       const WarpedImage& image = images_[first];
       const int factor = oversampling(image, part);
       const int width = factor * image.width, height = factor * image.height;
@@ -213,7 +214,7 @@ class Warper {
         origins = texel_origins(warp.to, from_, turns, width, height, context_);
         if (conflicts(from_, warp.to, *origins) > kMostConflicts) return false;
       }
-      const std::vector<std::size_t> alike = images_like(first);
+      const std::vector<std::size_t> alike = images_like(first, wanted);
       std::vector<BakeSource> sources;
       for (const std::size_t i : alike)
         sources.push_back({images_[i].image, &seen_loss_.image(i), images_[i].meaning});
@@ -231,15 +232,15 @@ class Warper {
     if (!warp.is_moved) return {};
     return tangent_turns(model_, from_, warp.to);
   }
-  /// Those from it on that can be baked together with an image.
-  std::vector<std::size_t> images_like(std::size_t first) const {
+  /// Those that can be baked together with one of them.
+  std::vector<std::size_t> images_like(std::size_t first, std::span<const std::size_t> images) const {
     const auto shape = [&](std::size_t i) {
       const WarpedImage& image = images_[i];
-      return std::tuple(is_color(i), image.image->width, image.image->height, image.width, image.height,
-                        image.wrap_u, image.wrap_v);
+      return std::tuple(image.image->width, image.image->height, image.width, image.height, image.wrap_u,
+                        image.wrap_v);
     };
     std::vector<std::size_t> alike;
-    for (std::size_t i = first; i < images_.size(); ++i) {
+    for (const std::size_t i : images) {
       if (shape(i) == shape(first)) alike.push_back(i);
     }
     return alike;

@@ -38,33 +38,39 @@ void over_rows(int height, const Context& context, const Row& row) {
                         });
 }
 
-/// Half the size: averages of what is known of 2 × 2 texels.
-Level pushed(const Image8& image, std::span<const std::uint8_t> known, const Context& context) {
-  const int width = (image.width + 1) / 2, height = (image.height + 1) / 2, channels = image.channels;
-  Level half{Image8(width, height, channels, image.encoding), {}};
-  half.known.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  over_rows(height, context, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      std::array<int, kMostChannels> sum{};
-      int count = 0;
-      for (int j = 2 * y; j < std::min(2 * y + 2, image.height); ++j) {
-        for (int i = 2 * x; i < std::min(2 * x + 2, image.width); ++i) {
-          if (known[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) +
-                    static_cast<std::size_t>(i)] == 0)
-            continue;
-          ++count;
-          const std::uint8_t* texel = image.at(i, j);
-          for (int k = 0; k < channels; ++k) sum[static_cast<std::size_t>(k)] += texel[k];
-        }
-      }
+/// Half the size: averages of what is known, 0 or 1, of 2 × 2 texels.
+template <std::size_t Channels>
+void push(const Image8& image, std::span<const std::uint8_t> known, Level& half, const Context& context) {
+  over_rows(half.image.height, context, [&](int y) {
+    const auto width = static_cast<std::size_t>(image.width);
+    // Beyond the last row or column there is nothing, so that it stands for itself with no weight.
+    const bool is_last = 2 * y + 1 == image.height;
+    const std::size_t above = static_cast<std::size_t>(2 * y) * width,
+                      below = is_last ? above : above + width;
+    std::uint8_t* out = half.image.at(0, y);
+    for (std::size_t x = 0; x < static_cast<std::size_t>(half.image.width); ++x, out += Channels) {
+      const std::size_t left = 2 * x, right = std::min(left + 1, width - 1);
+      const std::array<std::size_t, 4> texels{above + left, above + right, below + left, below + right};
+      const std::array<unsigned, 4> weights{known[texels[0]], right > left ? known[texels[1]] : 0u,
+                                            is_last ? 0u : known[texels[2]],
+                                            right > left && !is_last ? known[texels[3]] : 0u};
+      const unsigned count = weights[0] + weights[1] + weights[2] + weights[3];
       if (count == 0) continue;
-      half.known[half.index(x, y)] = 1;
-      for (int k = 0; k < channels; ++k) {
-        half.image.at(x, y)[k] =
-            static_cast<std::uint8_t>((sum[static_cast<std::size_t>(k)] + count / 2) / count);
+      half.known[half.index(static_cast<int>(x), y)] = 1;
+      for (std::size_t k = 0; k < Channels; ++k) {
+        unsigned sum = count / 2;  // rounds
+        for (std::size_t i = 0; i < 4; ++i) sum += weights[i] * image.pixels[texels[i] * Channels + k];
+        out[k] = static_cast<std::uint8_t>(count == 4 ? sum / 4 : sum / count);
       }
     }
   });
+}
+
+Level pushed(const Image8& image, std::span<const std::uint8_t> known, const Context& context) {
+  Level half{Image8((image.width + 1) / 2, (image.height + 1) / 2, image.channels, image.encoding), {}};
+  half.known.resize(half.index(0, half.image.height), 0);
+  constexpr std::array kPush{push<1>, push<2>, push<3>, push<kMostChannels>};
+  kPush[static_cast<std::size_t>(image.channels) - 1](image, known, half, context);
   return half;
 }
 
