@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "fovea/base/random.h"
 #include "support/meshes.h"
@@ -85,6 +87,55 @@ TEST(WarpAtlas, ThreadsDoNotMatter) {
   EXPECT_EQ(one.loss, three.loss);
   EXPECT_EQ(one.images.at(0).pixels, three.images.at(0).pixels);
   EXPECT_EQ(one.model.meshes[0].surface.layers[0].values, three.model.meshes[0].surface.layers[0].values);
+}
+
+/// Warps that lose so much in trials, by their floors, from a tenth on; of those that are baked some refused.
+struct Fakes {
+  std::vector<std::optional<double>> losses;
+  std::set<double> refused;
+  std::vector<double> tried, baked;
+
+  std::optional<AtlasWarp> found(std::optional<double> plain_loss) {
+    const WarpTrial trial{[this](double floor) -> std::optional<AtlasWarp> {
+                            const std::optional<double> loss = losses.at(tried.size());
+                            tried.push_back(floor);
+                            if (!loss) return std::nullopt;
+                            AtlasWarp warp;
+                            warp.loss = *loss;
+                            return warp;
+                          },
+                          [this](AtlasWarp& warp) {
+                            baked.push_back(warp.loss);
+                            return !refused.contains(warp.loss);
+                          }};
+    return find_warp(trial, 0.01, plain_loss);
+  }
+};
+
+TEST(FindWarp, TakesTheFirstThatIsClearlyBetter) {
+  Fakes fakes{{2.0, 1.2, 0.8, 0.1}, {}, {}, {}};
+  EXPECT_EQ(fakes.found(1.0)->floor, 0.04);
+  EXPECT_EQ(fakes.tried.size(), 3u);
+}
+
+TEST(FindWarp, ElseTheOneThatLosesLeast) {
+  Fakes fakes{{0.99, 0.95, std::nullopt, 0.97, 1.1}, {}, {}, {}};
+  EXPECT_EQ(fakes.found(1.0)->loss, 0.95);
+  EXPECT_EQ(fakes.tried.size(), 5u);
+}
+
+TEST(FindWarp, GoesOnWithLessAmbitionIfABakeIsRefused) {
+  Fakes fakes{{0.5, 0.6, 0.95, 0.92, 0.91}, {0.5, 0.6}, {}, {}};
+  EXPECT_EQ(fakes.found(1.0)->loss, 0.91);
+  EXPECT_EQ(fakes.baked, (std::vector{0.5, 0.6, 0.91}));
+  Fakes hopeless{{0.5, 1.5, 1.5, 1.5, 1.5}, {0.5}, {}, {}};
+  EXPECT_FALSE(hopeless.found(1.0));
+  EXPECT_EQ(hopeless.tried.size(), 5u);
+}
+
+TEST(FindWarp, WithoutALossToBeatAnyWillDo) {
+  Fakes fakes{{std::nullopt, 7.0, 1.0}, {}, {}, {}};
+  EXPECT_EQ(fakes.found(std::nullopt)->loss, 7.0);
 }
 
 }  // namespace

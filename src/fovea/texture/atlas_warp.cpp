@@ -259,6 +259,22 @@ class Warper {
 
 }  // namespace
 
+std::optional<AtlasWarp> find_warp(const WarpTrial& trial, double floor, std::optional<double> plain_loss) {
+  std::optional<AtlasWarp> found;
+  for (int attempt = 0; attempt < kAttempts && floor <= 1;) {
+    for (bool is_good = false; !is_good && attempt < kAttempts && floor <= 1; ++attempt, floor *= 2) {
+      std::optional<AtlasWarp> next = trial.moved(floor);
+      if (!next || (plain_loss && next->loss >= (found ? found->loss : *plain_loss))) continue;
+      found = std::move(next);
+      found->floor = floor;
+      is_good = !plain_loss || found->loss < kGoodLoss * *plain_loss;
+    }
+    if (found && trial.bake(*found)) return found;
+    found.reset();
+  }
+  return found;
+}
+
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
                      bool measured, Context& context) {
@@ -277,22 +293,15 @@ AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const War
   const bool is_final = std::ranges::all_of(images, [](const WarpedImage& image) {
     return oversampling(image, kTrialPart) == oversampling(image, 1);
   });
-  int attempt = 0;
-  const auto less_ambitious = [&] { ++attempt, asked.floor *= 2; };
-  // What is good in a trial may not be when it is baked at its best.
-  for (bool is_done = false; !is_done;) {
-    std::optional<AtlasWarp> found;
-    for (bool is_good = false; !is_good && attempt < kAttempts && asked.floor <= 1; less_ambitious()) {
-      std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
-      if (!next || !warper.bake(*next, kTrialPart, measured)) continue;
-      if (measured && next->loss >= (found ? found->loss : plain_loss)) continue;
-      found = std::move(next);
-      found->floor = asked.floor;
-      is_good = !measured || found->loss < kGoodLoss * plain_loss;
-    }
-    is_done = !found || is_final || warper.bake(*found, 1, measured);
-    if (found && is_done) best = std::move(*found);
-  }
+  const auto moved = [&](double floor) {
+    asked.floor = floor;
+    std::optional<AtlasWarp> next = warper.moved(warp(importance, asked, context));
+    if (next && !warper.bake(*next, kTrialPart, measured)) next.reset();
+    return next;
+  };
+  const auto bake = [&](AtlasWarp& found) { return is_final || warper.bake(found, 1, measured); };
+  const auto to_beat = measured ? std::optional(plain_loss) : std::nullopt;
+  if (auto found = find_warp({moved, bake}, options.floor, to_beat)) best = std::move(*found);
   if (measured) warper.fit_seams(best);
   best.plain_loss = plain_loss;
   best.maps = warper.maps();

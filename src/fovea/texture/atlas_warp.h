@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -58,5 +60,17 @@ struct AtlasWarp {
 AtlasWarp warp_atlas(const Model& model, const Atlas& atlas, std::span<const WarpedImage> images,
                      std::span<const VertexField> field, WarpAim aim, const WarpOptions& options,
                      bool measured, Context& context);
+
+/// Ways to try and to bake one warp.
+struct WarpTrial {
+  std::function<std::optional<AtlasWarp>(double floor)> moved;  ///< None if it cannot be taken.
+  std::function<bool(AtlasWarp&)> bake;                         ///< At its best; false if it is refused then.
+};
+
+/// How `warp_atlas` looks for one: from `floor` on, twice as much each time up to 1, five times at most,
+/// until one loses less than nine tenths of `plain_loss`; else the one that loses least of those that lose
+/// less than it. What is good in a trial may not be when it is baked at its best: then on from there. Without
+/// `plain_loss` the first that can be taken.
+std::optional<AtlasWarp> find_warp(const WarpTrial& trial, double floor, std::optional<double> plain_loss);
 
 }  // namespace fovea
