@@ -12,6 +12,7 @@
 #include "fovea/base/prefetch.h"
 #include "fovea/render/wide_triangle.h"
 #include "fovea/simplify/local_blocks.h"
+#include "fovea/simplify/view_cost_scratch.h"
 
 namespace fovea {
 
@@ -34,108 +35,14 @@ double log2_of(double x) {
 /// More than go around an edge that is shown once.
 constexpr std::size_t kMany = 32;
 
-std::size_t pixel_count(const FragmentLists& lists) {
+/// Without what fills up the last column.
+std::size_t picture_pixels(const FragmentLists& lists) {
   return static_cast<std::size_t>(lists.width()) * static_cast<std::size_t>(lists.height());
 }
 
 std::size_t rounded_up(std::size_t n) { return (n + kWide - 1) / kWide * kWide; }
 
 }  // namespace
-
-/// A face around the edge, in one showing.
-struct ViewCost::LocalFace {
-  const ShownInstance* showing = nullptr;
-  const PlannedCollapse* planned = nullptr;
-  std::uint32_t face = 0, shown = 0;
-  std::array<const ScreenVertex*, 3> before{}, after{};  // [#views]
-  bool goes = false, double_sided = false, has_holes = false;
-};
-
-/// The faces around an edge and the pixels that they cover, before and after its collapse.
-struct ViewCost::Scratch {
-  Scratch(std::size_t shown_faces, std::size_t value_count)
-      : changed_by(shown_faces + 1, 0), delta(value_count, 0) {}
-
-  /// A face as a view would see it after the collapse.
-  struct Seen {
-    bool is_seen = false;
-    std::array<ScreenVertex, 3> corners;
-    SampleBox box;
-    std::size_t first_rows = 0;  // of the columns of its box
-    std::optional<FaceValues::Shading> shading;
-  };
-
-  void begin_collapse() {
-    ++collapse;
-    faces.clear();
-    looks.clear();
-  }
-  void add(const LocalFace& face) {
-    changed_by[face.shown] = collapse;
-    faces.push_back(face);
-    looks.emplace_back();
-  }
-  /// Whether the collapse changes the face of a fragment; never the background.
-  bool changes(const Fragment& fragment) const {  // the last in `changed_by` stands for no triangle
-    return changed_by[std::min<std::size_t>(fragment.triangle, changed_by.size() - 1)] == collapse;
-  }
-
-  /// A view of the faces: which pixels they may cover, before or after.
-  struct Sight {
-    /// Adds those of a triangle. Returns where the rows of its columns begin.
-    std::size_t add(const std::array<ScreenVertex, 3>& v, const SampleBox& box) {
-      const int from = box.left / kColumn, to = (box.right - 1) / kColumn;
-      const std::size_t at = rows.size();
-      rows.resize(at + static_cast<std::size_t>(to - from + 1), {box.top, box.bottom});
-      if (from < to && WideTriangle::fits(v)) find_rows(v, box, rows.data() + at);
-      for (int column = from; column <= to; ++column) {
-        RowRange& all = columns[static_cast<std::size_t>(column)];
-        const RowRange& one = rows[at + static_cast<std::size_t>(column - from)];
-        if (one.begin >= one.end) continue;
-        all.begin = std::min(all.begin, one.begin);
-        all.end = std::max(all.end, one.end);
-      }
-      first = std::min(first, from);
-      last = std::max(last, to);
-      top = std::min(top, box.top);
-      bottom = std::max(bottom, box.bottom);
-      return at;
-    }
-    void clear() {
-      for (int column = first; column <= last; ++column) columns[static_cast<std::size_t>(column)] = {};
-      first = top = std::numeric_limits<int>::max();
-      last = bottom = -1;
-      going.clear();
-      rows.clear();
-    }
-    int height() const { return bottom - top; }
-
-    std::vector<Seen> seen;            // [#faces] or more
-    std::vector<std::uint32_t> going;  // those that are seen before, as shown
-    std::vector<RowRange> rows;        // of the columns of each face's box
-    std::vector<RowRange>
-        columns;  // of all of them, for the whole view; those from first to last are covered
-    int first = 0, last = -1, top = 0, bottom = 0;
-  };
-  Sight& sight(std::size_t view) { return sights[view % 2]; }
-
-  std::vector<std::uint32_t> changed_by;  // [#shown faces + 1], the last collapse that changes them
-  std::uint32_t collapse = 0;
-  std::vector<LocalFace> faces;                // by shown number
-  std::vector<std::optional<FaceLook>> looks;  // [#faces]
-  std::array<Sight, 2> sights;                 // of a view and the next
-  // Of the pixels that a sight covers:
-  std::vector<LocalBlock> locals;      // [#columns][height]
-  std::vector<std::uint32_t> unclear;  // of a column
-  // Of those that would change, face by face; for each there is room for all that it may cover:
-  std::vector<std::uint32_t> pixels, before, original, after;
-  std::vector<std::uint32_t> begin, end;  // [#faces + 1]; the first is not a face
-  std::vector<std::uint32_t> values;      // of a row
-  std::vector<PlannedCollapse> planned;   // [#showings of the slot]
-  std::vector<ScreenVertex> merged;       // [#showings of the slot][#views]
-  std::vector<int> delta;                 // [#values], pixels more after the collapse (entropy)
-  std::vector<std::uint32_t> in_delta;    // where that may not be 0
-};
 
 ViewCost::~ViewCost() = default;
 
@@ -147,7 +54,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
   for (std::size_t v = 0; v < shown.view_count(); ++v) {
     const int width = picture_width(shown.view(v), size);
     views_.push_back({FragmentLists(width, size, values.background()), {}, {}});
-    pixels = std::max(pixels, pixel_count(views_.back().lists));
+    pixels = std::max(pixels, picture_pixels(views_.back().lists));
   }
   if (measure == ViewMeasure::entropy) {
     const double most = static_cast<double>(pixels) * log2_of(static_cast<double>(pixels) + 1);
@@ -163,7 +70,7 @@ ViewCost::ViewCost(const CollapseState& state, ShownSurface& shown, const FaceVa
       ViewState& view = views_[v];
       if (measure == ViewMeasure::entropy) {
         view.count.assign(values.value_count(), 0);
-        view.count[values.background()] = static_cast<std::uint32_t>(pixel_count(view.lists));
+        view.count[values.background()] = static_cast<std::uint32_t>(picture_pixels(view.lists));
       }
       for (const ShownInstance& showing : shown.showings()) {
         const std::uint32_t first = state.slots[showing.slot].first_face;
@@ -625,7 +532,7 @@ double ViewCost::total() const {
       std::int64_t logs = 0;
       for (const std::uint32_t n : view.count) logs += n_log_n_[n];
       const auto largest = static_cast<double>(n_log_n_.size() - 1);
-      bits += static_cast<double>(n_log_n_[pixel_count(view.lists)] - logs) / (log_scale_ * largest);
+      bits += static_cast<double>(n_log_n_[picture_pixels(view.lists)] - logs) / (log_scale_ * largest);
     }
   }
   return measure_ == ViewMeasure::image ? static_cast<double>(sum) : bits;
