@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "fovea/base/error.h"
 #include "fovea/base/random.h"
@@ -231,6 +236,24 @@ TEST(ImageCodec, InterlacedPngIsTheSamePicture) {
 }
 
 // ---- damage ----
+
+TEST(ImageCodec, JpegOfInksAndInScansIsRead) {
+  // Red to the left and blue to the right, by four inks as printers have them (inverted, as is usual), and
+  // stored in scans that get finer.
+  for (const char* const name : {"cmyk.jpg", "progressive.jpg"}) {
+    std::ifstream file(std::string(FOVEA_TEST_FIXTURES "/") + name, std::ios::binary);
+    const std::vector<std::uint8_t> encoded{std::istreambuf_iterator<char>(file), {}};
+    const Image8 image = decode_image(encoded);
+    ASSERT_EQ(image.width, 24) << name;
+    ASSERT_EQ(image.height, 16);
+    ASSERT_EQ(image.channels, 3);
+    const std::array<int, 3> red{0xD0, 0x20, 0x40}, blue{0x20, 0x60, 0xC0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(image.at(4, 8)[k], red[k], 3) << name;
+      EXPECT_NEAR(image.at(19, 8)[k], blue[k], 3) << name;
+    }
+  }
+}
 
 TEST(ImageCodec, EveryTruncationIsRefused) {
   const Image8 image = soft_picture(40, 30, 3);
