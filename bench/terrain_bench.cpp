@@ -410,7 +410,9 @@ class Analysis {
     hull_ = lower_hull(all_);
     add("pruning, by step", [&] { return prune_by_step(joint_); });
     add("pruning, by byte", [&] { return prune(joint_, 0); });
-    add(fmt::format("pruning, by byte, up to {} rungs", kAhead), [&] { return prune(joint_, 0, kAhead); });
+    add(fmt::format("pruning, by byte, up to {} rungs", kAhead), [&] {
+      return prune(joint_, 0, std::array{kAhead, kAhead});
+    });
     add("growing, by byte", [&] { return grow(joint_, ~std::uint64_t{0}); });
     // As fit.h has it.
     ways_.push_back({fmt::format("hull of what pruning by up to {} drew", kAhead), lower_hull(ways_[2].drawn),

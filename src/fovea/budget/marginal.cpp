@@ -40,7 +40,8 @@ Rungs moved(Rungs rungs, std::size_t ladder, int by) {
 
 }  // namespace
 
-std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes, std::size_t ahead) {
+std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes,
+                              std::span<const std::size_t> ahead) {
   /// What the next step of a ladder loses for each byte, how far it goes, and where that was measured.
   struct Next {
     double slope = 0;
@@ -56,8 +57,8 @@ std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes, 
       return Next{slope(at, measured(moved(at.rungs, ladder, by))), by, at.rungs};
     };
     const auto measure = [&](std::size_t ladder) {
-      for (std::size_t n = 1;
-           n <= std::max<std::size_t>(ahead, 1) && at.rungs[ladder] + n < ladders.rungs[ladder]; ++n) {
+      const std::size_t most = ladder < ahead.size() ? std::max<std::size_t>(ahead[ladder], 1) : 1;
+      for (std::size_t n = 1; n <= most && at.rungs[ladder] + n < ladders.rungs[ladder]; ++n) {
         const Next found = step(ladder, static_cast<int>(n));
         if (!next[ladder] || found.slope < next[ladder]->slope) next[ladder] = found;
       }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace fovea {
@@ -33,10 +34,11 @@ struct JointPoint {
 /// and of textures nearly add up; before a step is taken, one that was measured elsewhere is measured again,
 /// as far as it went. Losses are asked for about once or twice for each step taken.
 ///
-/// A step goes down one rung, or up to `ahead` of them if that loses less for each byte: where losses rise by
-/// fits and starts, a rung that is bad for its bytes hides a good one below it, and one at a time never gets
-/// there. What a step passes over is not on the way. 0 is taken for 1.
-std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes, std::size_t ahead = 1);
+/// A step goes down one rung, or up to `ahead` [#ladders] of them if that loses less for each byte: where
+/// losses rise by fits and starts, a rung that is bad for its bytes hides a good one below it, and one at a
+/// time never gets there. What a step passes over is not on the way. One where nothing or 0 is given.
+std::vector<JointPoint> prune(const JointLadders& ladders, std::uint64_t bytes,
+                              std::span<const std::size_t> ahead = {});
 
 /// The other way: from the smallest of all up, the step that gains most for each byte, while they are within
 /// `bytes`. Every point on the way. Empty if the smallest takes more.
