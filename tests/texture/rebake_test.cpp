@@ -107,6 +107,13 @@ TEST(Rebake, NormalsBecomeAMapWhereThereIsNone) {
   }
 }
 
+TEST(Rebake, WhoHasAMapGetsNoTangents) {
+  Squares s = flat_and_wavy(2);
+  const Shrunk found = rebaked(s.simplified, rebake_of(s.original, true));
+  EXPECT_EQ(found.model.images.size(), s.simplified.images.size());
+  EXPECT_EQ(found.model.meshes[0].surface.find(Semantic::tangent), nullptr);
+}
+
 TEST(Rebake, NormalsTakeTheOldMapAlong) {
   // A map that leans along u everywhere, on a flat original: the normals of the result lean as well.
   Squares s = flat_and_wavy(2);

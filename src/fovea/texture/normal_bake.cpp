@@ -120,6 +120,7 @@ std::set<int> add_normal_maps(Model& model, std::span<const Atlas> atlases) {
     if (!atlas.fixed_because.empty() || !has_normals(model, atlas)) continue;
     const std::map<int, int> materials = lit_materials(model, atlas);
     int texture = -1;
+    std::map<int, int> given;  // of those
     for (const auto& [material, set] : materials) {
       std::optional<TextureRef>& normal = model.materials[static_cast<std::size_t>(material)].normal;
       if (image_of(model, normal) >= 0) continue;
@@ -131,8 +132,10 @@ std::set<int> add_normal_maps(Model& model, std::span<const Atlas> atlases) {
         model.images.push_back(encoded_flat(model.images[static_cast<std::size_t>(like)]));
       }
       normal = TextureRef{texture, set, {}};
+      given.emplace(material, set);
     }
-    if (!materials.empty()) add_tangents(model, atlas, materials);
+    // Maps that there are would be lit otherwise by tangents that they were not made for.
+    if (!given.empty()) add_tangents(model, atlas, given);
   }
   return added;
 }

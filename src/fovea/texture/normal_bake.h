@@ -19,8 +19,8 @@ bool has_normals(const Model& model, const Atlas& atlas);
 
 /// Makes place for normal maps in atlases whose texels may move and whose meshes have normals: materials
 /// without one get a flat one, one for the whole atlas, of the size and the file format of their base colour
-/// (or of the atlas's first image), and parts without tangents get those that the coordinates give, so that
-/// every viewer sees the same frames. Elements are only added. Returns the new images.
+/// (or of the atlas's first image), and their parts, if they have no tangents, those that the coordinates
+/// give, so that every viewer sees the same frames. Elements are only added. Returns the new images.
 std::set<int> add_normal_maps(Model& model, std::span<const Atlas> atlases);
 
 /// The original's normals, bent by its own map (the material's `scale` applied), as a normal map in the
