@@ -136,7 +136,7 @@ constexpr const char* kStyle =
     "text{font-size:12px;fill:#555}.grid{stroke:#ddd}polyline.way{fill:none;"
     "stroke:#2563a8;stroke-width:2}circle.way{fill:#2563a8}circle.all{fill:#bbb}circle.chosen{fill:none;"
     "stroke:#d1495b;stroke-width:3}figure{display:inline-block;margin:0 8px 12px 0;width:205px}figure "
-    "img{width:100%}"
+    "img{width:100%;height:auto}"
     "figcaption{font-size:12px}table{border-collapse:collapse}td,th{padding:2px "
     "12px;text-align:right;border-bottom:"
     "1px solid #eee}tr.chosen td{color:#d1495b;font-weight:bold}";

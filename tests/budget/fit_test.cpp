@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fovea/base/error.h"
+#include "fovea/base/random.h"
 #include "fovea/budget/picture_loss.h"
 #include "fovea/io/gltf_write.h"
 #include "fovea/io/image_codec.h"
@@ -161,6 +162,23 @@ TEST(Fit, TooFewBytesAreSaid) {
   EXPECT_FALSE(result.reached);
   EXPECT_GT(result.chosen.bytes, 300u);
   EXPECT_LE(result.chosen.bytes, result.path.back().bytes);
+}
+
+TEST(Fit, ImagesGoDownToTheFewestBytesThereAre) {
+  Model model = hills();
+  Image8 noise(256, 256, 3, ColorEncoding::srgb);
+  Random random(3);
+  for (std::uint8_t& value : noise.pixels) value = static_cast<std::uint8_t>(255 * random.uniform());
+  model.images[0].bytes = encode_png(noise);
+  Context context;
+  const FitOptions options = quick();
+  BudgetFit fit(model, options, context);
+  const FitResult smallest = fit.within(1);
+  EXPECT_FALSE(smallest.reached);
+  EXPECT_LT(images_of(smallest.model) * 500, images_of(model));
+  // That much is reached, also after a larger budget.
+  EXPECT_TRUE(fit.within(file_bytes(model) / 2).reached);
+  EXPECT_TRUE(fit.within(smallest.chosen.bytes).reached);
 }
 
 TEST(Fit, MatchesALikeness) {

@@ -209,7 +209,11 @@ class BudgetFit::Finder {
     if (best_ && best_->choice == ladders_.whole()) return;
     try_image_levels();
     result.reached = best_.has_value();
-    if (!result.reached) return take_smallest();
+    if (!result.reached) {
+      take_smallest();
+      result.reached = ladders_.file_bytes(best_->model) <= bytes_;  // estimates are a little more
+      return;
+    }
     if (ladders_.textures() != nullptr) {
       // Qualities near what is chosen, so that shares find what fits them.
       ladders_.textures()->within(bytes_for_images(best_->model), true);

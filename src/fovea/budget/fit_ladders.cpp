@@ -19,7 +19,6 @@ constexpr std::size_t kMostLadders = 8;
 
 /// Of a rung, in parts of the usual one before it.
 constexpr double kFewerImageBytes = 0.6;
-constexpr double kFewestImageBytes = 0.008;
 
 /// Bytes of JSON that come at most when images get other sizes and formats (EXT_texture_webp).
 std::uint64_t json_slack(const Model& model) {
@@ -115,9 +114,11 @@ void FitLadders::make_image_levels() {
   const std::uint64_t whole = image_bytes_of(model_);
   const std::uint64_t most = options_.most_bytes > 0 ? std::min(whole, options_.most_bytes) : whole;
   const double fewer = fewer_of(kFewerImageBytes, options_);
+  const std::uint64_t fewest = image_bytes({{}, textures_->within(0, false)});
   std::uint64_t last = whole;
-  for (double bytes = std::min(static_cast<double>(whole) * fewer, static_cast<double>(most));
-       bytes > kFewestImageBytes * static_cast<double>(whole); bytes *= fewer) {
+  // At the latest where that is less than the fewest, they are chosen.
+  for (double bytes = std::min(static_cast<double>(whole) * fewer, static_cast<double>(most)); last > fewest;
+       bytes *= fewer) {
     context_.advance_or_throw("textures", 1 - bytes / static_cast<double>(whole));
     std::vector<std::size_t> ways = textures_->within(static_cast<std::uint64_t>(bytes), false);
     const std::uint64_t taken = image_bytes({{}, ways});
