@@ -251,13 +251,10 @@ class Shrinker {
       change.importance = std::move(warp.importance);
       std::vector<std::optional<ImageOutput>> outputs(pictures.size());
       if (!warp.is_moved) {
-        const std::vector<int> asked = std::exchange(changing, {});
         std::vector<std::size_t> smaller;
         for (std::size_t i = 0; i < pictures.size(); ++i) {
           const int image = atlas.images[i];
-          if (std::ranges::find(asked, image) == asked.end()) continue;
-          if (is_smaller(image)) smaller.push_back(i);
-          if (!is_smaller(image)) changing.push_back(image);
+          if (is_smaller(image) && std::ranges::find(changing, image) != changing.end()) smaller.push_back(i);
         }
         const ImageSights sights = this->sights(faces);
         for_each_of(smaller.size(), [&](std::size_t k) {
@@ -266,7 +263,10 @@ class Shrinker {
           outputs[i] =
               encoded(image, nearer_of(image, std::move(warp.images[i]), unfilled[i], sights), faces);
         });
-        for (const std::size_t i : smaller) set_or_keep(atlas.images[i], std::move(outputs[i]));
+        for (const std::size_t i : smaller) {
+          set_or_keep(atlas.images[i], std::move(outputs[i]));
+          std::erase(changing, atlas.images[i]);
+        }
         return "it would gain nothing";
       }
       for_each_of(outputs.size(),
