@@ -235,8 +235,6 @@ TEST(ImageCodec, InterlacedPngIsTheSamePicture) {
   EXPECT_EQ(decode_image(plain).pixels, decode_image(interlaced).pixels);
 }
 
-// ---- damage ----
-
 TEST(ImageCodec, JpegOfInksAndInScansIsRead) {
   // Red to the left and blue to the right, by four inks as printers have them (inverted, as is usual), and
   // stored in scans that get finer.
@@ -254,6 +252,8 @@ TEST(ImageCodec, JpegOfInksAndInScansIsRead) {
     }
   }
 }
+
+// ---- damage ----
 
 TEST(ImageCodec, EveryTruncationIsRefused) {
   const Image8 image = soft_picture(40, 30, 3);

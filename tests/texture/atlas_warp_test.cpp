@@ -89,7 +89,7 @@ TEST(WarpAtlas, ThreadsDoNotMatter) {
   EXPECT_EQ(one.model.meshes[0].surface.layers[0].values, three.model.meshes[0].surface.layers[0].values);
 }
 
-/// Warps that lose so much in trials, by their floors, from a tenth on; of those that are baked some refused.
+/// Warps that lose so much in trials, of floors from a hundredth on; bakes of some losses are refused.
 struct Fakes {
   std::vector<std::optional<double>> losses;
   std::set<double> refused;
