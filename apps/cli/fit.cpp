@@ -136,15 +136,11 @@ class Fit : public Verb {
   /// small.glb for 600KB and 150KB: small-600KB.glb, small-150KB.glb.
   std::vector<std::string> outputs_of_budgets() const {
     std::vector<std::string> outputs;
-    std::string budgets = bytes_;
-    std::erase(budgets, ' ');
-    for (std::size_t begin = 0; begin < budgets.size();) {
-      const std::size_t end = std::min(budgets.find(',', begin), budgets.size());
+    for (std::string budget : split_list(bytes_)) {
+      std::erase(budget, ' ');
       std::filesystem::path path = output_;
-      path.replace_filename(path.stem().string() + "-" + budgets.substr(begin, end - begin) +
-                            path.extension().string());
+      path.replace_filename(path.stem().string() + "-" + budget + path.extension().string());
       outputs.push_back(path.string());
-      begin = end + 1;
     }
     return outputs;
   }

@@ -14,17 +14,15 @@ namespace {
 template <class T>
 std::vector<T> parse_list(const std::string& text, const std::string& option, const char* example) {
   std::vector<T> numbers;
-  for (const char* at = text.c_str(); *at != '\0';) {
+  if (text.empty()) return numbers;
+  for (const std::string& part : split_list(text)) {
     T number{};
-    const char* end = text.c_str() + text.size();
-    const auto [rest, fault] = std::from_chars(at, end, number);
-    const bool more = fault == std::errc() && *rest == ',' && rest + 1 != end;
-    if (fault != std::errc() || (rest != end && !more)) {
+    const auto [rest, fault] = std::from_chars(part.data(), part.data() + part.size(), number);
+    if (fault != std::errc() || rest != part.data() + part.size()) {
       throw Error(ErrorKind::usage, fmt::format("'{}' is not a list of numbers", text), "--" + option,
                   fmt::format("write them with commas between: --{} {}", option, example));
     }
     numbers.push_back(number);
-    at = more ? rest + 1 : rest;
   }
   return numbers;
 }

@@ -92,15 +92,12 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
 
 Option describe_bytes(const std::string& help, std::string& text) { return {"bytes", help, &text, "size"}; }
 
-std::vector<std::uint64_t> parse_byte_list(const std::string& option, std::string text) {
-  std::erase(text, ' ');
+std::vector<std::uint64_t> parse_byte_list(const std::string& option, const std::string& text) {
   std::vector<std::uint64_t> numbers;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    numbers.push_back(parse_bytes(option, text.substr(begin, end - begin)));
+  for (const std::string& part : split_list(text)) {
+    numbers.push_back(parse_bytes(option, part));
     if (numbers.size() > 1 && numbers.back() >= numbers[numbers.size() - 2])
       throw Error(ErrorKind::usage, "numbers of bytes do not fall", option, "give the largest first");
-    begin = end + 1;
   }
   return numbers;
 }
@@ -109,18 +106,16 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
                                   std::size_t most) {
   std::vector<double> numbers;
   bool good = true;
-  for (std::size_t begin = 0; good && begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
+  for (const std::string& part : split_list(text)) {
     double number = 0;
-    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, number);
-    good = error == std::errc() && rest == text.data() + end && std::isfinite(number);
+    const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    good = good && error == std::errc() && rest == part.data() + part.size() && std::isfinite(number);
     numbers.push_back(number);
-    begin = end + 1;
   }
   if (!good || numbers.size() < least || numbers.size() > most) {
     const std::string count = least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
     throw Error(ErrorKind::usage, fmt::format("'{}' is not a value for it", printable(text)), "--" + option,
-                fmt::format("write {} numbers with commas between them and no blanks", count));
+                fmt::format("write {} numbers with commas between them", count));
   }
   return numbers;
 }

@@ -28,7 +28,7 @@ Option describe_bytes(const std::string& help, std::string& text);
 /// "500KB", "1.5 MB", "2MiB", "300000": 1 or more. Throws Error(usage) with the option.
 std::uint64_t parse_bytes(const std::string& option, const std::string& text);
 /// Several with commas between them, falling.
-std::vector<std::uint64_t> parse_byte_list(const std::string& option, std::string text);
+std::vector<std::uint64_t> parse_byte_list(const std::string& option, const std::string& text);
 
 /// "34,89": the numbers of an option's text, `least` to `most` of them. Throws Error(usage) with the option.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t least,

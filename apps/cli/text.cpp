@@ -64,6 +64,19 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+std::vector<std::string> split_list(std::string_view text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    std::string_view part = text.substr(begin, comma - begin);
+    part.remove_prefix(std::min(part.find_first_not_of(' '), part.size()));
+    part = part.substr(0, part.find_last_not_of(' ') + 1);
+    parts.emplace_back(part);
+    begin = comma + 1;
+  }
+  return parts;
+}
+
 std::string wrap(const std::string& text, std::size_t width, std::size_t indent) {
   std::string result;
   std::size_t column = indent, begin = 0;

@@ -22,6 +22,9 @@ std::string percent_text(std::uint64_t part, std::uint64_t whole);
 std::string number_text(double number);
 /// `text` without control characters, so that names from files cannot steer the terminal.
 std::string printable(std::string_view text);
+/// "600 KB, 2" -> {"600 KB", "2"}: what stands between commas, one part more than there are commas, without
+/// blanks around it.
+std::vector<std::string> split_list(std::string_view text);
 /// Breaks a paragraph at spaces so that no line exceeds `width`; lines after the first are indented.
 std::string wrap(const std::string& text, std::size_t width, std::size_t indent);
 

@@ -33,6 +33,12 @@ TEST(Text, SecondsAndPercent) {
 
 TEST(Text, NamesCannotSteerTheTerminal) { EXPECT_EQ(printable("a\x1b[2Jb\n"), "a?[2Jb?"); }
 
+TEST(Text, ListsAreSplitAtCommas) {
+  EXPECT_EQ(split_list("600 KB, 2"), (std::vector<std::string>{"600 KB", "2"}));
+  EXPECT_EQ(split_list(",a ,"), (std::vector<std::string>{"", "a", ""}));
+  EXPECT_EQ(split_list(" "), std::vector<std::string>{""});
+}
+
 TEST(Text, WrapIndentsAllLinesButTheFirst) {
   EXPECT_EQ(wrap("aa bb cc", 7, 2), "aa bb\n  cc");
   EXPECT_EQ(wrap("longerthanaline b", 4, 0), "longerthanaline\nb");
