@@ -1,6 +1,7 @@
 // What LOD chains are, as Markdown: lods.mjs FOVEA FOLDER MODEL... makes chains of each model with default options and
-// prints their levels, and then what chains cost without images and pictures, by counts and by the screen.
-import { rmSync } from 'node:fs';
+// prints their levels, then what chains cost without images and pictures, by counts and by the screen, and then what one file of all
+// levels takes if they share vertices.
+import { readFileSync, rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { modelName, reporter, usage } from './commands.mjs';
 
@@ -36,4 +37,24 @@ for (const model of models) {
   const screen = lods(model, ...bare, '--coverage', '0.5,0.25,0.1');
   console.log(`| ${modelName(model)} | ${seconds(lods(model, ...bare).seconds)} | ${seconds(lods(model, ...bare, '--metric', 'quadric').seconds)} ` +
     `| ${screen.levels.slice(1).map((l) => l.triangles.toLocaleString('en')).join(', ')} | ${seconds(screen.seconds)} |`);
+}
+
+/** How many vertices a .glb holds: of each list of positions once. */
+function vertices(file) {
+  const glb = readFileSync(file), json = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)));
+  const lists = new Set(json.meshes.flatMap((m) => m.primitives.map((p) => p.attributes.POSITION)));
+  return [...lists].reduce((sum, i) => sum + json.accessors[i].count, 0);
+}
+
+console.log('\n| model | vertices of level 0 | in the list | file with vertices of their own | shared | shared, `--quantize --compression meshopt` |');
+console.log('|---|--:|--:|--:|--:|--:|');
+for (const model of models) {
+  const of = (name, ...options) => {
+    const file = join(folder, `${modelName(model)}-${name}.glb`);
+    return { file, finest: report('lods', model, '-o', file, '--force', ...bare, ...options).levels[0].split_vertices };
+  };
+  const own = of('own'), shared = of('shared', '--share-vertices');
+  const small = of('small', '--share-vertices', '--quantize', '--compression', 'meshopt');
+  console.log(`| ${modelName(model)} | ${shared.finest.toLocaleString('en')} | ${vertices(shared.file).toLocaleString('en')} ` +
+    `| ${[own, shared, small].map(({ file }) => bytes(statSync(file).size)).join(' | ')} |`);
 }
