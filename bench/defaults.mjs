@@ -9,41 +9,44 @@ const [fovea, folder, ...models] = process.argv.slice(2);
 if (models.length === 0) usage('defaults.mjs FOVEA FOLDER MODEL...');
 mkdirSync(folder, { recursive: true });
 const variants = {
-  'quadric (--fast)': ['--fast'],
-  'auto (default)': [],
-  'pictures of all triangles': ['--metric', 'image', '--metric-from', '16'],
-  'pictures from 4 times the target': ['--metric', 'image', '--metric-from', '4'],
-  'pictures of 512 pixels': ['--metric', 'image', '--view-size', '512'],
-  'pictures from 4 times, 512 pixels': ['--metric', 'image', '--metric-from', '4', '--view-size', '512'],
-  'saliency auto': ['--saliency', 'auto'],
-  '--best': ['--best'],
+  '`--fast`: quadrics alone': ['--fast'],
+  '**the default**': [],
+  '`--even-exposure`': ['--even-exposure'],
+  'pictures from 1.5 times the target': ['--metric', 'image', '--metric-from', '1.5'],
+  'from 4 times': ['--metric', 'image', '--metric-from', '4'],
+  'from 16 times': ['--metric', 'image', '--metric-from', '16'],
+  'pictures of 512²': ['--metric', 'image', '--view-size', '512'],
+  'from 4 times, 512²': ['--metric', 'image', '--metric-from', '4', '--view-size', '512'],
+  '`--saliency auto`': ['--saliency', 'auto'],
+  '`--best`': ['--best'],
 };
 const report = reporter(fovea);
 const out = join(folder, 'out.glb');
-const sums = Object.fromEntries(Object.keys(variants).map((name) => [name, { seconds: 0, base: 0, lit: 0, psnr: 0, msssim: 0, wins: 0 }]));
+const rows = Object.fromEntries(Object.keys(variants).map((name) => [name, []]));
 let cells = 0;
 for (const model of models) {
   for (const ratio of ['0.1', '0.03']) {
     ++cells;
-    let normal;
     for (const [name, options] of Object.entries(variants)) {
       const { seconds } = report('simplify', model, '-o', out, '--force', '--ratio', ratio, '--allow-miss', ...options);
       const { base_color: base, lit } = report('compare', model, out, '--distance-samples', '0').results[0];
-      if (options.length === 0) normal = lit.flip_foreground;
-      const sum = sums[name];
-      sum.seconds += seconds;
-      sum.base += base.flip_foreground;
-      sum.lit += lit.flip_foreground;
-      sum.psnr += lit.psnr_foreground;
-      sum.msssim += lit.ms_ssim_foreground;
-      sum.wins += lit.flip_foreground < (normal ?? -1);
+      rows[name].push({ seconds, 'flip base': base.flip_foreground, 'flip lit': lit.flip_foreground, 'psnr base': base.psnr_foreground, 'psnr lit': lit.psnr_foreground });
       console.error(`${modelName(model)} ${ratio} ${name}: ${seconds.toFixed(1)} s, FLIP ${lit.flip_foreground.toFixed(4)}, ${lit.psnr_foreground.toFixed(2)} dB`);
     }
   }
 }
-console.log('| variant | s, mean | FLIP base | FLIP lit | PSNR lit, dB | MS-SSIM lit | better than the default by FLIP |');
-console.log('|---|--:|--:|--:|--:|--:|--:|');
-for (const [name, s] of Object.entries(sums)) {
-  console.log(`| ${name} | ${(s.seconds / cells).toFixed(1)} | ${(s.base / cells).toFixed(4)} | ${(s.lit / cells).toFixed(4)} | ${(s.psnr / cells).toFixed(2)} ` +
-    `| ${(s.msssim / cells).toFixed(4)} | ${name.startsWith('auto') ? '' : `${s.wins} of ${cells}`} |`);
+
+const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
+const normal = rows['**the default**'];
+console.log(`${models.length} models at 10 and 3 % of their triangles: ${models.map(modelName).join(', ')}.\n`);
+console.log('| variant | s | FLIP base | ratio | FLIP lit | ratio | PSNR base, dB | lit | better than the default by FLIP, lit | the same |');
+console.log('|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|');
+for (const [name, own] of Object.entries(rows)) {
+  const of = (what) => mean(own.map((r) => r[what]));
+  // The geometric mean of the ratio to the default.
+  const ratio = (what) => Math.exp(mean(own.map((r, i) => Math.log(r[what] / normal[i][what])))).toFixed(3);
+  const count = (is) => own.filter((r, i) => is(r['flip lit'], normal[i]['flip lit'])).length;
+  const against = own === normal ? ' | ' : `${count((a, b) => a < b)} of ${cells} | ${count((a, b) => a === b)}`;
+  console.log(`| ${name} | ${of('seconds').toFixed(1)} | ${of('flip base').toFixed(4)} | ${ratio('flip base')} | ${of('flip lit').toFixed(4)} | ${ratio('flip lit')} ` +
+    `| ${of('psnr base').toFixed(2)} | ${of('psnr lit').toFixed(2)} | ${against} |`);
 }
