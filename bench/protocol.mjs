@@ -14,6 +14,13 @@ mkdirSync(folder, { recursive: true });
 const ways = ['qem+resize', 'lee+relax', 'yang', 'ours+resize', 'ours', 'ours+rebake', 'ours+normals'];
 const passes = ['unlit', 'lit'];
 
+/** What the table of texture_bench says of each way: [PSNR base, MS-SSIM base, PSNR lit, MS-SSIM lit]. */
+function ownScores(table) {
+  const rows = table.split('\n').map((line) => line.split('|').map((cell) => cell.trim())).filter((cells) => cells.length === 10 && Number(cells[5]));
+  return ways.map((way) => rows.find((cells) => cells[4] === way).slice(5, 9).map(Number));
+}
+const ours = [];  // of each model
+
 console.log('| model | way | PSNR base | MS-SSIM base | PSNR lit | MS-SSIM lit |\n|---|---|--:|--:|--:|--:|');
 const all = models.map((model) => {
   const name = modelName(model);
@@ -21,9 +28,10 @@ const all = models.map((model) => {
   if (model === 'vase') run(fovea, 'sample', 'vase', '-o', original, '--force');
   const table = execFileSync(bench, ['--table', '1', '--models', name, '--keep', folder], {
     env: { ...process.env, ...(model === 'vase' ? {} : { FOVEA_DATA: dirname(dirname(model)) }) },
-    stdio: ['ignore', 'pipe', 'ignore'],
+    encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
   });
   writeFileSync(join(folder, `${name}.md`), table);
+  ours.push(ownScores(table));
   const tests = evaluated(evaluator, original, ways.map((way) => join(folder, `${name}-${way}.glb`)));
   tests.forEach((t, w) => {
     const scores = passes.map((pass) => `${t[pass].psnr_fg.toFixed(2)} | ${t[pass].msssim.toFixed(4)}`);
@@ -33,11 +41,19 @@ const all = models.map((model) => {
 });
 
 const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
-console.log(`\nMean gain over ${ways[0]} (${models.length} models), and of how many no other way has a better PSNR:\n`);
-console.log('| way | PSNR base | MS-SSIM base | PSNR lit | MS-SSIM lit | first base | first lit |\n|---|--:|--:|--:|--:|--:|--:|');
-ways.forEach((way, w) => {
-  const gain = (pass, measure) => mean(all.map((tests) => tests[w][pass][measure] - tests[0][pass][measure]));
-  const firsts = (pass) => all.filter((tests) => tests.every((t) => tests[w][pass].psnr_fg >= t[pass].psnr_fg)).length;
-  console.log(`| ${way} | ${passes.map((p) => `${gain(p, 'psnr_fg').toFixed(2)} | ${gain(p, 'msssim').toFixed(4)}`).join(' | ')} | ` +
-    `${passes.map(firsts).join(' | ')} |`);
+const theirs = all.map((tests) => tests.map((t) => passes.flatMap((pass) => [t[pass].psnr_fg, t[pass].msssim])));
+console.log(`\nMean gain over ${ways[0]} (${models.length} models), by Fovea's judge (whole pictures) and by the other (pixels that either covers):\n`);
+console.log('| way | by Fovea: PSNR base | MS-SSIM base | PSNR lit | MS-SSIM lit | by the other: PSNR base | MS-SSIM base | PSNR lit | MS-SSIM lit |');
+console.log(`|---|${'--:|'.repeat(8)}`);
+const signed = (x, digits) => `${x < 0 ? '−' : '+'}${Math.abs(x).toFixed(digits)}`;
+ways.slice(1).forEach((way, i) => {
+  const gains = [ours, theirs].flatMap((judge) => [0, 1, 2, 3].map((m) => signed(mean(judge.map((of) => of[i + 1][m] - of[0][m])), m % 2 ? 4 : 2)));
+  console.log(`| ${way} | ${gains.join(' | ')} |`);
+});
+// Cells, of each model, judge and measure, in which a way is behind one of the published ones.
+const published = [0, 1, 2];
+ways.slice(3).forEach((way, i) => {
+  const behind = [ours, theirs].flatMap((judge) => judge.flatMap((of, m) => [0, 1, 2, 3].filter((k) => published.some((w) => of[w][k] > of[i + 3][k])).map((k) =>
+    `${modelName(models[m])} ${k % 2 ? 'MS-SSIM' : 'PSNR'} ${k < 2 ? 'base' : 'lit'} by ${judge === ours ? 'Fovea' : 'the other'}`)));
+  console.log(`\n${way} is behind in ${behind.length} of ${models.length * 8} cells${behind.length ? `: ${behind.join(', ')}` : ''}.`);
 });
