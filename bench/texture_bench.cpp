@@ -22,6 +22,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -347,6 +348,31 @@ Fit fitted(const Model& original, const Model& small, std::uint64_t most, const 
   return best;
 }
 
+/// What a way gains over another, over all models.
+struct Gains {
+  double psnr = 0, ms_ssim = 0, log_flip = 0;
+  int better = 0, worse = 0;
+  double worst = 0;
+  std::string_view worst_model;
+  void add(const ImageScores& own, const ImageScores& plain, std::string_view model) {
+    psnr += own.psnr == plain.psnr ? 0 : own.psnr - plain.psnr;  // both infinite for what looks the same
+    ms_ssim += own.ms_ssim - plain.ms_ssim;
+    log_flip += own.flip == plain.flip ? 0 : std::log(own.flip / plain.flip);
+    count(own.psnr == plain.psnr ? 0 : own.psnr - plain.psnr, model);
+  }
+  void count(double gain, std::string_view model) {
+    constexpr double kTold = 0.005;  // dB that still show in two digits
+    better += gain >= kTold;
+    worse += gain <= -kTold;
+    if (gain > -kTold || gain >= worst) return;
+    worst = gain;
+    worst_model = model;
+  }
+  std::string at_most() const {
+    return worst == 0 ? "0.00" : fmt::format("{:+.2f} ({})", worst, worst_model);
+  }
+};
+
 void print_equal_bytes(const std::vector<Subject>& subjects, const Request& request) {
   constexpr std::array<const char*, 3> kNames{"plain", "sides", "bytes"};
   constexpr std::array kParts{2, 4, 8};
@@ -358,33 +384,11 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
       "| model | side | way | kB | dB | PSNR base | MS-SSIM base | FLIP base | PSNR lit | MS-SSIM lit | FLIP "
       "lit |\n"
       "|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
-  struct Sum {
-    double psnr = 0, ms_ssim = 0, log_flip = 0;
-    int better = 0, worse = 0;
-    double worst = 0;
-    std::string worst_model;
-    void add(const ImageScores& own, const ImageScores& plain, const std::string& model) {
-      psnr += own.psnr == plain.psnr ? 0 : own.psnr - plain.psnr;  // both infinite for what looks the same
-      ms_ssim += own.ms_ssim - plain.ms_ssim;
-      log_flip += own.flip == plain.flip ? 0 : std::log(own.flip / plain.flip);
-      count(own.psnr == plain.psnr ? 0 : own.psnr - plain.psnr, model);
-    }
-    void count(double gain, const std::string& model) {
-      constexpr double kTold = 0.005;  // dB that still show in two digits
-      better += gain >= kTold;
-      worse += gain <= -kTold;
-      if (gain > -kTold || gain >= worst) return;
-      worst = gain;
-      worst_model = model;
-    }
-    std::string at_most() const {
-      return worst == 0 ? "0.00" : fmt::format("{:+.2f} ({})", worst, worst_model);
-    }
-  };
-  std::array<std::array<std::array<Sum, 2>, 3>, 3> sums{};
-  std::array<std::array<Sum, 3>, 3> both{};  // PSNR of the passes together
+  std::array<std::array<std::array<Gains, 2>, 3>, 3> sums{};
+  std::array<std::array<Gains, 3>, 3> both{};  // PSNR of the passes together
   for (const Subject& subject : subjects) {
-    const Model model = subject.make(), large = without_loss(model);
+    const Model model = subject.make();
+    const Model large = without_loss(model);
     for (std::size_t d = 0; d < kParts.size(); ++d) {
       const double scale = 1.0 / kParts[d];
       std::vector<Model> results{plainly_resized(model, scale, request.files)};
@@ -425,12 +429,12 @@ void print_equal_bytes(const std::vector<Subject>& subjects, const Request& requ
   for (std::size_t d = 0; d < kParts.size(); ++d) {
     for (std::size_t w = 1; w < kNames.size(); ++w) {
       for (std::size_t p = 0; p < 2; ++p) {
-        const Sum& sum = sums[d][w][p];
+        const Gains& sum = sums[d][w][p];
         fmt::print("| 1/{} | {} | {} | {:+.2f} | {:+.5f} | {:.3f} | {} | {} | {} |\n", kParts[d], kNames[w],
                    p == 0 ? "base" : "lit", sum.psnr / n, sum.ms_ssim / n, std::exp(sum.log_flip / n),
                    sum.better, sum.worse, sum.at_most());
       }
-      const Sum& sum = both[d][w];
+      const Gains& sum = both[d][w];
       fmt::print("| 1/{} | {} | both | {:+.2f} | | | {} | {} | {} |\n", kParts[d], kNames[w], sum.psnr / n,
                  sum.better, sum.worse, sum.at_most());
     }
