@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,6 +17,7 @@
 #include "fovea/simplify/legality.h"
 #include "fovea/simplify/value_merge.h"
 #include "fovea/simplify/view_metric.h"
+#include "fovea/simplify/view_pricer.h"
 
 namespace fovea {
 
@@ -71,8 +72,7 @@ class Engine {
         merge_(state, options.placement),
         outcome_(outcome),
         stepper_(state, cost_, legality_, merge_, queue_, views, outcome.record, outcome.error) {
-    if (views_ == nullptr) return;
-    for (int i = 0; i < context.thread_count(); ++i) memory_.push_back(views_->make_memory(state));
+    if (views_ != nullptr) pricer_.emplace(*views_, state, cost_, options.placement, context.thread_count());
   }
 
   void run() {
@@ -99,10 +99,8 @@ class Engine {
   void price_in_line(Due& due);
   void take(Due& due);
   bool has_changed(const Due& due, std::uint32_t v) const;
-  void price_by_views(std::uint32_t e, const Quadric& q, double limit, ViewMetric::Memory& memory);
-  void price_by_views(std::span<const Due> edges);
-  ViewMetric::Memory take_memory();
-  void give_back(ViewMetric::Memory&& memory);
+  void price_by_views(std::span<const EdgeLimit> edges);
+  double enough(double cost) const { return kEnough * std::max(cost, level_); }
   bool take_by_views();
   void try_edge(Due& due);
   bool is_dearer(const Due& due, double price);
@@ -127,8 +125,7 @@ class Engine {
   CollapseQueue queue_;              // edges, then components
   std::vector<std::uint8_t> tries_;  // [#E], refusals since the last change around
   EdgeCost cost_;
-  std::vector<ViewMetric::Memory> memory_;  // with views: [#threads], less those in use
-  std::mutex memory_mutex_;
+  std::optional<ViewPricer> pricer_;  // with views
   Legality legality_;
   ValueMerge merge_;
   std::array<Due, kLine> line_;  // what was taken from the queue at each of the last ticks
@@ -174,7 +171,7 @@ double Engine::vanish_price(std::uint32_t component) {
   const double cost = state_.vanish[component].cost;
   if (views_ == nullptr) return cost;
   find_living(component);
-  return views_->price_of_loss(ring_, cost, *memory_[0].scratch);
+  return views_->price_of_loss(ring_, cost, pricer_->scratch());
 }
 
 /// Lists the faces of a component that are left, in `ring_`.
@@ -186,55 +183,12 @@ void Engine::find_living(std::uint32_t component) {
   }
 }
 
-/// Notes the best place for an edge by what views lose there, at that price or one beyond the limit. Of
-/// half-edge collapses the cheaper.
-void Engine::price_by_views(std::uint32_t e, const Quadric& q, double limit, ViewMetric::Memory& memory) {
-  const auto [a, b] = mesh_.edges[e].ends;
-  PartialChange part = views_->noted_part(e);
-  if (options_.placement != Placement::half_edge) {
-    Candidate best = cost_.best_place(e, q);
-    if (std::isfinite(best.cost)) {
-      memory.merge.plan(e, a, b, best.position);
-      best.cost = views_->price_up_to(limit, e, best, memory.merge, *memory.scratch, part);
-    }
-    views_->note(e, best, part);
-    return;
-  }
-  std::array<Candidate, 3> places;
-  const std::size_t count = cost_.fallbacks(e, q, places.data());
-  Candidate best;
-  for (std::size_t i = 0; i < count; ++i) {
-    memory.merge.plan(e, a, b, places[i].position);
-    const double price = views_->price(e, places[i], memory.merge, *memory.scratch);
-    if (price < best.cost) best = {price, places[i].position};
-  }
-  views_->note(e, best, views_->whole());
-}
-
-/// A memory that no other thread uses.
-ViewMetric::Memory Engine::take_memory() {
-  const std::lock_guard lock(memory_mutex_);
-  ViewMetric::Memory memory = std::move(memory_.back());
-  memory_.pop_back();
-  return memory;
-}
-
-void Engine::give_back(ViewMetric::Memory&& memory) {
-  const std::lock_guard lock(memory_mutex_);
-  memory_.push_back(std::move(memory));
-}
-
-/// Prices edges and puts them into the queue, in parallel.
-void Engine::price_by_views(std::span<const Due> edges) {
-  views_->team().run(edges.size(), [&](std::size_t i) {
-    const std::uint32_t e = edges[i].item;
-    ViewMetric::Memory memory = take_memory();
-    price_by_views(e, cost_.quadric(e), kEnough * std::max(edges[i].cost, level_), memory);
-    give_back(std::move(memory));
-  });
-  for (const Due& due : edges) {
-    const double price = views_->noted(due.item).cost;
-    if (std::isfinite(price)) queue_.set(due.item, price);
+/// Prices edges by views, in parallel, and puts them into the queue.
+void Engine::price_by_views(std::span<const EdgeLimit> edges) {
+  pricer_->price(edges);
+  for (const auto& [edge, limit] : edges) {
+    const double price = views_->noted(edge).cost;
+    if (std::isfinite(price)) queue_.set(edge, price);
   }
 }
 
@@ -350,7 +304,7 @@ bool Engine::take_by_views() {
     }
     // What is priced for the first time will be needed; new prices can go out of date before they are.
     const std::size_t most = views_->is_noted(item) ? kTogether : kAhead;
-    std::vector<Due> stale;
+    std::vector<EdgeLimit> stale;
     std::vector<std::pair<std::uint32_t, double>> others;
     for (std::size_t i = 0; i < kAhead && stale.size() < most; ++i) {
       const std::uint32_t next = queue_.first();
@@ -358,7 +312,7 @@ bool Engine::take_by_views() {
       if (next >= edge_count_ || views_->is_fresh(next)) {
         others.emplace_back(next, queue_.cost_floor(next));
       } else {
-        stale.push_back({.item = next, .cost = queue_.cost_floor(next)});
+        stale.push_back({next, enough(queue_.cost_floor(next))});
       }
       queue_.remove(next);
     }
@@ -374,8 +328,7 @@ void Engine::price(Due& due) {
     due.place = cost_.best_place(due.item, due.quadric);
     return;
   }
-  if (!views_->is_fresh(due.item))
-    price_by_views(due.item, due.quadric, std::numeric_limits<double>::infinity(), memory_[0]);
+  if (!views_->is_fresh(due.item)) pricer_->price(due.item, due.quadric);
   due.place = views_->noted(due.item);
 }
 
@@ -489,7 +442,7 @@ void Engine::try_edge(Due& due) {
   const std::size_t count = cost_.fallbacks(due.item, due.quadric, places.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_legal(due.item, places[i].position)) continue;
-    if (views_ != nullptr) places[i].cost = views_->price(due.item, places[i], merge_, *memory_[0].scratch);
+    if (views_ != nullptr) places[i].cost = views_->price(due.item, places[i], merge_, pricer_->scratch());
     take_or_requeue(due, places[i]);
     return;
   }
@@ -559,8 +512,8 @@ void Engine::revive_edges(std::uint32_t b) {
     if (tries_[e] == 0) return;
     tries_[e] = 0;
     if (views_ != nullptr) {
-      const Due due{.item = e};
-      price_by_views({&due, 1});
+      const EdgeLimit edge{e, enough(0)};
+      price_by_views({&edge, 1});
       return;
     }
     const double cost = cost_.best_place(e, cost_.quadric(e)).cost;
