@@ -1,9 +1,10 @@
 // What LOD chains are, as Markdown: lods.mjs FOVEA FOLDER MODEL... makes chains of each model with default options and
 // prints their levels, then what chains cost without images and pictures, by counts and by the screen, and then what one file of all
 // levels takes if they share vertices.
-import { readFileSync, rmSync, statSync } from 'node:fs';
+import { rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { modelName, reporter, usage } from './commands.mjs';
+import { readGlb } from './glb.mjs';
 
 const [fovea, folder, ...models] = process.argv.slice(2);
 if (models.length === 0) usage('lods.mjs FOVEA FOLDER MODEL...');
@@ -41,7 +42,7 @@ for (const model of models) {
 
 /** How many vertices a .glb holds: of each list of positions once. */
 function vertices(file) {
-  const glb = readFileSync(file), json = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)));
+  const { json } = readGlb(file);
   const lists = new Set(json.meshes.flatMap((m) => m.primitives.map((p) => p.attributes.POSITION)));
   return [...lists].reduce((sum, i) => sum + json.accessors[i].count, 0);
 }

@@ -1,9 +1,9 @@
 // What a budget gives by where the model is looked from, as Markdown: looks.mjs FOVEA FOLDER MODEL... fits each model without
 // cameras into some budgets, seen at several sizes, and then the sample terrain, with a camera low over it and with one that flies,
 // and the models that have cameras, with --views cameras and without, compared by the pictures of these cameras. Some minutes for each.
-import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { modelName, reporter, run, usage } from './commands.mjs';
+import { readGlb, writeGlb } from './glb.mjs';
 
 const [fovea, folder, ...models] = process.argv.slice(2);
 if (models.length === 0) usage('looks.mjs FOVEA FOLDER MODEL...');
@@ -12,9 +12,7 @@ const out = join(folder, 'look.glb'), plain = join(folder, 'plain.glb');
 
 /** Writes a .glb with a camera at `places`, [eye, target] of each, along which it moves if there are several. */
 function withCamera(from, to, places) {
-  const glb = readFileSync(from), length = glb.readUInt32LE(12);
-  const model = JSON.parse(glb.subarray(20, 20 + length));
-  const body = glb.subarray(20 + length + 8);
+  const { json: model, bytes: body } = readGlb(from);
   const sub = (a, b) => a.map((x, i) => x - b[i]);
   const unit = (a) => a.map((x) => x / Math.hypot(...a));
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -47,15 +45,7 @@ function withCamera(from, to, places) {
     }];
     model.buffers[0].byteLength = data.length;
   }
-  let json = Buffer.from(JSON.stringify(model));
-  json = Buffer.concat([json, Buffer.alloc((4 - (json.length % 4)) % 4, ' ')]);
-  const head = Buffer.alloc(20), chunk = Buffer.alloc(8);
-  head.write('glTF');
-  [2, 28 + json.length + data.length, json.length].forEach((n, i) => head.writeUInt32LE(n, 4 + 4 * i));
-  head.write('JSON', 16);
-  chunk.writeUInt32LE(data.length);
-  chunk.write('BIN\0', 4);
-  writeFileSync(to, Buffer.concat([head, json, chunk, data]));
+  writeGlb(to, model, data);
 }
 
 /** The sample terrain with a camera low over it, as terrain_bench looks at it, and the same with a flight over it. */

@@ -1,6 +1,7 @@
 // Yang, Li, Wang, Xu: Visual saliency guided textured model simplification (2016).
 import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { bold, count, fixed, kFromTheSide, signed, table } from './workshop.mjs';
+import { readGlb } from '../glb.mjs';
 
 // Table 2 of the paper: PSNR and MS-SSIM of its three ways, and the colours of the texture.
 const paper = [
@@ -118,11 +119,10 @@ function figure8(shop) {
 
 /** The image files of a .glb, in their order. */
 function images(file) {
-  const glb = readFileSync(file);
-  const length = glb.readUInt32LE(12), json = JSON.parse(glb.subarray(20, 20 + length)), body = 20 + length + 8;
+  const { json, bytes } = readGlb(file);
   return json.images.map(({ bufferView }) => {
     const { byteOffset = 0, byteLength } = json.bufferViews[bufferView];
-    return glb.subarray(body + byteOffset, body + byteOffset + byteLength);
+    return bytes.subarray(byteOffset, byteOffset + byteLength);
   });
 }
 
