@@ -1,16 +1,18 @@
-// What a simplification costs and gives by its options, as Markdown: defaults.mjs FOVEA FOLDER MODEL... simplifies each
-// model to 10 and 3 % in several variants, from the quickest to the slowest, and compares with the original. The means say
-// where --fast, the defaults and --best lie. Minutes for each model.
+// What a simplification costs and gives by its options, as Markdown: defaults.mjs [--only TEXT] FOVEA FOLDER MODEL... simplifies
+// each model to 10 and 3 % in several variants, from the quickest to the slowest, and compares with the original. The means say
+// where --fast, the defaults and --best lie. With --only the default and those whose names have the text. Minutes for each model.
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
-import { modelName, reporter, usage } from './commands.mjs';
+import { modelName, reporter, takeOption, usage } from './commands.mjs';
 
-const [fovea, folder, ...models] = process.argv.slice(2);
-if (models.length === 0) usage('defaults.mjs FOVEA FOLDER MODEL...');
+const words = process.argv.slice(2), only = takeOption(words, '--only');
+const [fovea, folder, ...models] = words;
+if (models.length === 0) usage('defaults.mjs [--only TEXT] FOVEA FOLDER MODEL...');
 mkdirSync(folder, { recursive: true });
-const variants = {
+const kDefault = '**the default**';
+const variants = Object.fromEntries(Object.entries({
   '`--fast`: quadrics alone': ['--fast'],
-  '**the default**': [],
+  [kDefault]: [],
   '`--even-exposure`': ['--even-exposure'],
   'pictures from 1.5 times the target': ['--metric', 'image', '--metric-from', '1.5'],
   'from 4 times': ['--metric', 'image', '--metric-from', '4'],
@@ -19,7 +21,7 @@ const variants = {
   'from 4 times, 512²': ['--metric', 'image', '--metric-from', '4', '--view-size', '512'],
   '`--saliency auto`': ['--saliency', 'auto'],
   '`--best`': ['--best'],
-};
+}).filter(([name]) => !only || name === kDefault || name.includes(only)));
 const report = reporter(fovea);
 const out = join(folder, 'out.glb');
 const rows = Object.fromEntries(Object.keys(variants).map((name) => [name, []]));
@@ -37,7 +39,7 @@ for (const model of models) {
 }
 
 const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
-const normal = rows['**the default**'];
+const normal = rows[kDefault];
 console.log(`${models.length} models at 10 and 3 % of their triangles: ${models.map(modelName).join(', ')}.\n`);
 console.log('| variant | s | FLIP base | ratio | FLIP lit | ratio | PSNR base, dB | lit | better than the default by FLIP, lit | the same |');
 console.log('|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|');
