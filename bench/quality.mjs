@@ -35,12 +35,12 @@ const kTold = [[0, -1], [1, 1], [3, -1], [4, 1]];  // of the scores, and which w
 let cells = 0, won = 0, wonGltfpack = 0;
 const pairs = {};  // of each peer, of each share: [Fovea's scores, its scores]; of gltfpack the better by each score
 console.log(`Against ${Object.keys(peers).join(', ')}${evaluator ? ', by another judge' : ''}.\n`);
-console.log('| model | to | triangles | seconds | base colour: FLIP | MS-SSIM | lit: FLIP | MS-SSIM | best of the others |');
-console.log('|---|--:|--:|--:|---|---|---|---|---|');
+console.log('| model | to | triangles | base colour: FLIP | MS-SSIM | lit: FLIP | MS-SSIM | best of the others |');
+console.log('|---|--:|--:|---|---|---|---|---|');
 for (const model of models) {
   for (const share of shares) {
     const ours = join(folder, 'fovea.glb');
-    const { seconds, after } = report('simplify', model, '-o', ours, '--force', '--allow-miss', '--ratio', `${share}`);
+    const { after } = report('simplify', model, '-o', ours, '--force', '--allow-miss', '--ratio', `${share}`);
     const results = [];
     for (const [name, simplify] of Object.entries(all)) {
       const out = join(folder, `${name.replace(/ /g, '')}.glb`);
@@ -70,7 +70,7 @@ for (const model of models) {
       const show = (x, is) => (is ? `**${x.toFixed(4)}**` : x.toFixed(4));
       return `${show(own, wins)} / ${other ? show(other.value, !wins) : '–'}`;
     });
-    console.log(`| ${modelName(model)} | ${100 * share} % | ${after.triangles} | ${seconds.toFixed(2)} | ${row.join(' | ')} | ${[...best].join(', ') || 'none left'} |`);
+    console.log(`| ${modelName(model)} | ${100 * share} % | ${after.triangles} | ${row.join(' | ')} | ${[...best].join(', ') || 'none left'} |`);
   }
 }
 console.log(`\nFovea is at least as good as the best of all others in ${won} of ${cells} cells, and as the best of gltfpack in ${wonGltfpack}.\n`);
