@@ -81,7 +81,7 @@ class Simplify : public Verb {
         "Simplification",
         {{"fast", "By quadrics alone: tenths of a second.", &fast_, ""},
          {"best",
-          "Try metrics and what people look at, and keep what looks best: some twenty times as long as "
+          "Try metrics and what people look at, and keep what looks best: some forty times as long as "
           "without.",
           &best_, ""}});
     OptionList saliency = describe(saliency_options_);
