@@ -47,7 +47,8 @@ for (const model of models) {
       let told = ' | | | |';
       if (left > 0) {
         const { base_color: base, lit } = report('compare', model, out, '--distance-samples', '0').results[0];
-        told = [base.flip_foreground.toFixed(4), lit.flip_foreground.toFixed(4), base.psnr_foreground.toFixed(2), lit.psnr_foreground.toFixed(2)].join(' | ') + ' |';
+        const db = (s) => (s.psnr_foreground ?? Infinity).toFixed(2);
+        told = `${base.flip_foreground.toFixed(4)} | ${lit.flip_foreground.toFixed(4)} | ${db(base)} | ${db(lit)} |`;
         page.push(row(out, `${way}: ${left.toLocaleString('en')} triangles, FLIP ${lit.flip_foreground.toFixed(4)}`, `${stem}.webp`));
       } else {
         page.push(`<p>${way}: ${existsSync(out) ? 'no triangles' : 'fails'}`);
